@@ -1,0 +1,5 @@
+"""What goes wrong for a reason that the user can mend."""
+
+
+class Failure(Exception):
+    """An expected failure; its text is one line that says what is wrong, where, and what would be right."""
