@@ -1,0 +1,1 @@
+"""Rigid-body mechanics, worked out before the first tick."""
