@@ -1,0 +1,164 @@
+"""What a bench file may say: one model for each of its sections, which are checked one by one.
+
+Sections are separate so that a mistake in one does not hide the mistakes in another. Cross-checks against the
+database, the step or other files are in :mod:`hilplant.bench.mapping` and :mod:`hilplant.bench.assembly`.
+"""
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import ConfigDict, Field, model_validator
+
+from hilplant.bench.checked import Checked, Name, NotNegative, Positive, Real, wrong
+from hilplant.units import TURN_RAD
+
+Group = dict[str, Any]
+OptionalGroup = Annotated[Group, Field(default_factory=dict)]
+Messages = Annotated[dict[str, Group], Field(default_factory=dict)]
+Pauses = Annotated[tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]], Field(strict=False)]
+Whole = Annotated[int, Field(ge=0)]
+
+
+class BenchFile(Checked):
+    """The outermost keys."""
+
+    name: Name
+    extends: Name | None = None
+    step_s: Annotated[float, Field(gt=0, le=0.1)] = 0.001
+    plant: Group
+    bus: Group
+    initial: OptionalGroup
+    inputs: OptionalGroup
+    loop: OptionalGroup
+    ecu: OptionalGroup
+
+
+class PlantSection(Checked):
+    """What stands on the bench."""
+
+    motor: Name
+    linkage: Name
+    load: Group
+    park_switch: Group
+
+
+class NoLoad(Checked):
+    """Nothing but the linkage, without weight."""
+
+    model: Literal["none"]
+
+
+class PolynomialLoad(Checked):
+    """No-load torque fitted over angle and speed, (6.1)-(6.3)."""
+
+    model: Literal["polynomial"]
+    c1: NotNegative
+    c2: NotNegative
+
+
+class LoadChoice(Checked):
+    """The load, chosen by the name of its model."""
+
+    load: Annotated[NoLoad | PolynomialLoad, Field(discriminator="model")]
+
+
+class ParkSwitchSection(Checked):
+    """Contact over the crank angle."""
+
+    park_angle_deg: Annotated[float, Field(ge=0, lt=360)]
+    window_deg: Annotated[float, Field(gt=0, lt=360)]
+    hysteresis_deg: NotNegative = 0.0
+    bounce_ms: NotNegative = 0.0
+
+    @model_validator(mode="after")
+    def _window_within_turn(self) -> Self:
+        if self.window_deg + 2.0 * self.hysteresis_deg >= 360.0:
+            text = "hysteresis_deg must leave a gap: window_deg + 2 hysteresis_deg must be below 360"
+            raise wrong("hysteresis_deg", text=text)
+        return self
+
+
+class InitialSection(Checked):
+    """The state at tick 0."""
+
+    crank_angle_rad: Annotated[float, Field(ge=0, lt=TURN_RAD)] = 0.0
+    motor_speed_rad_s: Annotated[float, Field(ge=-2000, le=2000)] = 0.0
+    current_a: Annotated[float, Field(ge=-500, le=500)] = 0.0
+
+
+class BusSection(Checked):
+    """Outermost keys of the bus."""
+
+    interface: Group
+    database: Name
+    receive: Messages
+    send: Messages
+    safe: OptionalGroup
+
+
+class InterfaceSection(Checked):
+    """Arguments of the CAN interface, passed on as they are; only its name is known here."""
+
+    model_config = ConfigDict(extra="allow")
+
+    interface: Name
+
+
+class SignalEntry(Checked):
+    """How one signal of the database relates to one of the plant.
+
+    The plant's value is the database's physical value times `scale` plus `offset`, in both directions.
+    """
+
+    signal: Name
+    scale: Real = 1.0
+    offset: Real = 0.0
+    choices: dict[str, str] | None = None
+    invert: bool = False
+
+    @model_validator(mode="after")
+    def _invertible(self) -> Self:
+        if self.scale == 0.0:
+            raise wrong("scale", text="scale must not be 0")
+        return self
+
+
+class ReceiveEntry(Checked):
+    """A message that the plant takes in; without `timeout_ms` it may stay away for ten cycle times."""
+
+    signals: Annotated[dict[str, str | Group], Field(min_length=1)]
+    timeout_ms: NotNegative | None = None
+    protection: Group | None = None
+
+
+class SendEntry(Checked):
+    """A message that the plant sends; by default at the database's cycle time; 0: on change only."""
+
+    signals: Annotated[dict[str, str | Group], Field(min_length=1)]
+    period_ms: NotNegative | None = None
+    offset_ms: NotNegative = 0.0
+    on_change: Annotated[list[str], Field(default_factory=list)]
+    protection: Group | None = None
+
+
+class LoopSettings(Checked):
+    """How the loop runs, and how it treats its interface."""
+
+    on_overrun: Literal["count", "degrade", "stop"] = "count"
+    priority: Annotated[int, Field(ge=1, le=99)] = 80
+    cpu: Whole | None = None
+    frames_per_tick: Annotated[int, Field(ge=1)] = 100
+    queue_frames: Annotated[int, Field(ge=1)] = 64
+    reopen_ms: Pauses = (100, 2000)
+
+    @model_validator(mode="after")
+    def _reopen_grows(self) -> Self:
+        if self.reopen_ms[0] > self.reopen_ms[1]:
+            raise wrong("reopen_ms", text="reopen_ms must be [first pause, longest pause], rising")
+        return self
+
+
+class EcuSettings(Checked):
+    """The stand-in relay ECU."""
+
+    pause_s: Positive = 3.0
+    period_ms: Positive = 10.0

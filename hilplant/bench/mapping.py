@@ -1,0 +1,69 @@
+"""One message of the bus database as the bench maps it, checked before a direction is chosen for it.
+
+What the plant receives, the stand-in ECU sends, with the same mapping read the other way; so a mapped message
+is kept in a form that both are built from.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from hilplant.bench.description import ReceiveEntry, SendEntry, SignalEntry
+from hilplant.bench.place import Place
+from hilplant.bench.problems import suggestion
+from hilplant.bus.mapping import MappingError, SignalMapping, link
+from hilplant.bus.protection import Protection, ProtectionError
+from hilplant.signals import Signal
+
+
+@dataclass(frozen=True, slots=True)
+class MappedMessage:
+    """A message, its mapped signals and its protection."""
+
+    message: Any
+    mappings: tuple[SignalMapping, ...]
+    protection: Protection | None
+
+
+def map_message(
+    place: Place, message: Any, entry: ReceiveEntry | SendEntry, signals: Sequence[Signal]
+) -> MappedMessage | None:
+    """Look up and check every mapped signal; None when any of them cannot work."""
+    mappings = [_mapping(place, message, name, written, signals) for name, written in entry.signals.items()]
+    sound = tuple(mapping for mapping in mappings if mapping is not None)
+    try:
+        settings = entry.protection
+        protection = Protection.from_settings(settings, message.length) if settings is not None else None
+    except ProtectionError as error:
+        place.note("protection", text=f"{message.name}: {error}")
+        return None
+    return MappedMessage(message, sound, protection) if len(sound) == len(mappings) else None
+
+
+def _mapping(place: Place, message: Any, name: str, written: Any, signals: Sequence[Signal]) -> SignalMapping | None:
+    location = (*place.location, "signals", name)
+    data = {"signal": written} if isinstance(written, str) else written
+    entry = place.reading.check(place.document, location, data, SignalEntry)
+    if entry is None or not _known(place, message, name, entry.signal, signals):
+        return None
+    mapping = SignalMapping(name, entry.signal, entry.scale, entry.offset, entry.choices, entry.invert)
+    try:
+        link(message, mapping, signals)
+    except MappingError as error:
+        place.note("signals", name, text=f"{message.name}.{name}: {error.text}")
+        return None
+    return mapping
+
+
+def _known(place: Place, message: Any, name: str, plant_name: str, signals: Sequence[Signal]) -> bool:
+    """Say whether both ends of a mapping exist; note what was probably meant where one does not."""
+    in_database = [signal.name for signal in message.signals]
+    in_plant = [signal.name for signal in signals]
+    if name not in in_database:
+        place.note("signals", name, text=f"{message.name} has no signal '{name}'{suggestion(name, in_database)}")
+    elif plant_name not in in_plant:
+        text = f"the plant has no signal '{plant_name}' here{suggestion(plant_name, in_plant)}"
+        place.note("signals", name, text=text)
+    else:
+        return True
+    return False

@@ -1,0 +1,50 @@
+"""When messages come and go: from the bench where it says so, else from the cycle times of the database."""
+
+from typing import Any
+
+from hilplant.bench.description import ReceiveEntry, SendEntry
+from hilplant.bench.place import Place
+from hilplant.bench.problems import suggestion
+from hilplant.bus.codec import Timing
+from hilplant.signals import PUBLISHED_INDEX
+from hilplant.units import MILLISECOND_NS
+
+#: A message that is supervised may stay away for so many cycle times, when nothing else is said.
+CYCLES_UNTIL_LOST = 10
+
+
+def timeout_ns(place: Place, message: Any, entry: ReceiveEntry) -> int:
+    """Return after how long without it a message counts as lost; 0 for a message that nobody supervises."""
+    cycle_ms = message.cycle_time or 0
+    timeout_ms = CYCLES_UNTIL_LOST * cycle_ms if entry.timeout_ms is None else entry.timeout_ms
+    if entry.timeout_ms is None and not cycle_ms:
+        text = f"timeout_ms is missing: the database gives {message.name} no cycle time; 0 is unsupervised"
+        place.note(text=text)
+    if 0.0 < timeout_ms <= cycle_ms:
+        text = f"timeout_ms must be longer than the message's cycle time of {cycle_ms} ms, not {timeout_ms:g}"
+        place.note("timeout_ms", text=text)
+    return round(timeout_ms * MILLISECOND_NS)
+
+
+def sending(place: Place, message: Any, entry: SendEntry, step_ns: int) -> Timing:
+    """Return when a message is sent."""
+    period_ms = float(message.cycle_time or 0) if entry.period_ms is None else entry.period_ms
+    period_ns = round(period_ms * MILLISECOND_NS)
+    if not period_ns and not entry.on_change:
+        text = f"period_ms or on_change is missing: the database gives {message.name} no cycle time"
+        place.note(text=text)
+    if period_ns % step_ns:
+        text = f"period_ms must be a multiple of the step of {step_ns / MILLISECOND_NS:g} ms, not {period_ms:g}"
+        place.note("period_ms", text=text)
+    if period_ns and entry.offset_ms >= period_ms:
+        text = f"offset_ms must be below the period of {period_ms:g} ms, not {entry.offset_ms:g}"
+        place.note("offset_ms", text=text)
+    return Timing(period_ns, round(entry.offset_ms * MILLISECOND_NS), _watched(place, entry))
+
+
+def _watched(place: Place, entry: SendEntry) -> tuple[str, ...]:
+    for name in entry.on_change:
+        if name not in PUBLISHED_INDEX:
+            text = f"the plant has no signal '{name}' here{suggestion(name, PUBLISHED_INDEX)}"
+            place.note("on_change", text=text)
+    return tuple(name for name in entry.on_change if name in PUBLISHED_INDEX)

@@ -1,0 +1,68 @@
+"""Values of signals as people write them: `true` for a flag, a name for a choice, a number in its range."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from hilplant.bench.place import Place
+from hilplant.bench.problems import suggestion
+from hilplant.signals import INPUT_INDEX, INPUTS, Signal
+
+
+def signal_value(signal: Signal, written: Any) -> float:
+    """Return the plant's number for a written value.
+
+    Raises
+    ------
+    ValueError
+        Saying what would be right.
+
+    """
+    if signal.kind == "choice" and isinstance(written, str):
+        return _choice(signal, written)
+    if signal.kind == "flag" and isinstance(written, bool):
+        return float(written)
+    if isinstance(written, bool) or not isinstance(written, int | float) or signal.kind in ("flag", "choice"):
+        raise ValueError(f"{signal.name} must be {_wanted(signal)}, not {_shown(written)}")
+    if not signal.minimum <= written <= signal.maximum:
+        raise ValueError(f"{signal.name} must be {_wanted(signal)}, not {written}")
+    return float(written)
+
+
+def signal_values(place: Place, otherwise: Mapping[str, Any]) -> tuple[tuple[int, float], ...]:
+    """Return index and value of the inputs that are written at a place, or `otherwise` when nothing is."""
+    written = place.data()
+    found: list[tuple[int, float]] = []
+    for name, value in (written if isinstance(written, dict) else otherwise).items():
+        try:
+            found.append((input_index(name), signal_value(INPUTS[input_index(name)], value)))
+        except ValueError as error:
+            place.note(name, text=str(error))
+    return tuple(found)
+
+
+def input_index(name: str) -> int:
+    """Return the place of an input of the plant among the others."""
+    if name not in INPUT_INDEX:
+        raise ValueError(f"the plant has no input '{name}'{suggestion(name, INPUT_INDEX)}")
+    return INPUT_INDEX[name]
+
+
+def _choice(signal: Signal, written: str) -> float:
+    if written not in signal.choices:
+        raise ValueError(f"{signal.name} has no choice '{written}'{suggestion(written, signal.choices)}")
+    return float(signal.choices.index(written))
+
+
+def _wanted(signal: Signal) -> str:
+    if signal.kind == "flag":
+        return "true or false"
+    if signal.kind == "choice":
+        return f"one of {', '.join(signal.choices)}"
+    unit = f" {signal.unit}" if signal.unit else ""
+    return f"a number from {signal.minimum:g} to {signal.maximum:g}{unit}"
+
+
+def _shown(written: Any) -> str:
+    if isinstance(written, bool):
+        return "true" if written else "false"
+    return "nothing" if written is None else repr(written)

@@ -1,0 +1,84 @@
+"""Columns of numbers over time -> a file, in the format that its ending names: .csv, .parquet or .mf4."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+
+from hilplant.failure import Failure
+
+Columns = Mapping[str, NDArray[np.float64]]
+
+
+class TableError(Failure):
+    """A table cannot be written like this; the message says how it can."""
+
+
+def write_table(path: str | Path, columns: Columns, units: Mapping[str, str]) -> None:
+    """Write columns of equal length, the first of which is the time [s]; `units` by column, "" for none.
+
+    Numbers keep every digit: what is read back is bit for bit what was written.
+
+    Raises
+    ------
+    TableError
+        When the ending is not known, its library is not installed, or the file cannot be written.
+
+    """
+    check_ending(path)
+    try:
+        _WRITERS[Path(path).suffix.lower()](Path(path), columns, units)
+    except OSError as error:
+        raise TableError(f"{path} cannot be written: {(error.strerror or str(error)).lower()}") from error
+
+
+def check_ending(path: str | Path) -> None:
+    """Say before any work is done whether a file with this name could be written."""
+    ending = Path(path).suffix.lower()
+    if ending not in _WRITERS:
+        raise TableError(f"{path}: the ending must be one of {', '.join(_WRITERS)}")
+    if ending == ".mf4":
+        _mdf_library()
+
+
+def _write_csv(path: Path, columns: Columns, units: Mapping[str, str]) -> None:
+    from pyarrow import csv
+
+    with path.open("wb") as file:
+        file.write((",".join(columns) + "\n").encode())
+        csv.write_csv(pa.table(dict(columns)), file, csv.WriteOptions(include_header=False))
+
+
+def _write_parquet(path: Path, columns: Columns, units: Mapping[str, str]) -> None:
+    from pyarrow import parquet
+
+    fields = [pa.field(name, pa.float64(), metadata={"unit": units.get(name, "")}) for name in columns]
+    parquet.write_table(pa.table(list(columns.values()), schema=pa.schema(fields)), path)
+
+
+def _write_mf4(path: Path, columns: Columns, units: Mapping[str, str]) -> None:
+    asammdf = _mdf_library()
+    names = list(columns)
+    time_s = columns[names[0]]
+    signals = [asammdf.Signal(columns[name], time_s, name=name, unit=units.get(name, "")) for name in names[1:]]
+    with asammdf.MDF(version="4.10") as file:
+        file.append(signals, comment="hilplant", common_timebase=True)
+        file.save(path, overwrite=True, compression=2)
+
+
+def _mdf_library() -> Any:
+    try:
+        import asammdf
+    except ImportError:
+        raise TableError("MF4 files need asammdf: pip install 'hilplant[mdf]'") from None
+    return asammdf
+
+
+_WRITERS: dict[str, Callable[[Path, Columns, Mapping[str, str]], None]] = {
+    ".csv": _write_csv,
+    ".parquet": _write_parquet,
+    ".mf4": _write_mf4,
+}

@@ -1,0 +1,143 @@
+"""A scenario file: what drives the plant over time, when nothing on a bus does."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from hilplant import resources
+from hilplant.bench.checked import Checked, NotNegative, Positive
+from hilplant.bench.description import InitialSection, OptionalGroup
+from hilplant.bench.problems import suggestion
+from hilplant.bench.reading import Reading
+from hilplant.bench.values import signal_value
+from hilplant.bench.yaml_reader import Document, Location
+from hilplant.signals import INPUT_INDEX, INPUTS, Signal
+from hilplant.units import SECOND_NS
+
+_Pair = Annotated[list[Any], Field(min_length=2, max_length=2)]
+
+
+class _ScenarioFile(Checked):
+    seconds: Positive
+    title: str = ""
+    initial: OptionalGroup
+    signals: Annotated[dict[str, list[_Pair]], Field(default_factory=dict)]
+
+
+class _Ramp(Checked):
+    ramp_to: Any
+    seconds: Positive
+
+
+class _Instant(Checked):
+    time: NotNegative
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """From `time_s` on the signal has `value`, or is on its way there for `ramp_s`."""
+
+    time_s: float
+    value: float
+    ramp_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """Entries of each named input by its index, and what differs from the bench's initial state."""
+
+    seconds: float
+    initial: dict[str, float]
+    entries: dict[int, tuple[Entry, ...]]
+
+    def input_rows(self, input_row: NDArray[np.float64], step_ns: int) -> NDArray[np.float64]:
+        """Return the inputs of every tick; times are rounded to ticks, unnamed inputs keep `input_row`."""
+        rows = np.tile(input_row, (round(self.seconds * SECOND_NS / step_ns), 1))
+        for index, entries in self.entries.items():
+            for entry in entries:
+                _apply(rows[:, index], entry, step_ns)
+        return rows
+
+
+def load_scenario(name: str | Path) -> Scenario:
+    """Read and check a scenario, by its path or by the name of a shipped one.
+
+    Raises
+    ------
+    BenchError
+        With every problem, each with file and line.
+
+    """
+    reading = Reading()
+    document = reading.named_file(resources.named("scenarios", name))
+    if document.problems or not reading.sources:
+        reading.raise_problems()
+    top = reading.take(document, (), _ScenarioFile)
+    initial = reading.check(document, ("initial",), document.at(("initial",)) or {}, InitialSection)
+    entries = _entries(reading, document) if isinstance(document.at(("signals",)), dict) else {}
+    reading.raise_problems()
+    if top is None or initial is None:
+        raise AssertionError("a description that failed left no problem behind")
+    return Scenario(top.seconds, initial.model_dump(include=initial.model_fields_set), entries)
+
+
+def _entries(reading: Reading, document: Document) -> dict[int, tuple[Entry, ...]]:
+    found: dict[int, tuple[Entry, ...]] = {}
+    for name, items in document.at(("signals",)).items():
+        if name not in INPUT_INDEX:
+            text = f"the plant has no input '{name}'{suggestion(name, INPUT_INDEX)}"
+            reading.note(document, ("signals", name), text)
+        elif isinstance(items, list):
+            pairs = [pair if isinstance(pair, list) else [] for pair in items]
+            signal = INPUTS[INPUT_INDEX[name]]
+            found[INPUT_INDEX[name]] = _entries_of(reading, document, signal, pairs)
+    return found
+
+
+def _entries_of(reading: Reading, document: Document, signal: Signal, pairs: Sequence[list[Any]]) -> tuple[Entry, ...]:
+    entries: list[Entry] = []
+    for index, pair in enumerate(pairs):
+        if len(pair) != 2:
+            continue
+        location = ("signals", signal.name, index)
+        instant = reading.check(document, (*location, 0), {"time": pair[0]}, _Instant)
+        entry = _entry(reading, document, (*location, 1), signal)
+        if instant is None or entry is None:
+            continue
+        if entries and instant.time <= entries[-1].time_s:
+            reading.note(document, location, f"time {instant.time} s must come after {entries[-1].time_s} s")
+            continue
+        entries.append(Entry(instant.time, *entry))
+    return tuple(entries)
+
+
+def _entry(reading: Reading, document: Document, location: Location, signal: Signal) -> tuple[float, float] | None:
+    """Return the written value and the time over which it is reached."""
+    written, ramp_s = document.at(location), 0.0
+    if isinstance(written, dict):
+        ramp = reading.take(document, location, _Ramp)
+        if ramp is None:
+            return None
+        written, ramp_s = ramp.ramp_to, ramp.seconds
+    try:
+        if ramp_s and signal.kind != "real":
+            raise ValueError(f"{signal.name} is a {signal.kind} and cannot follow a ramp; give it a value")
+        return signal_value(signal, written), ramp_s
+    except ValueError as error:
+        reading.note(document, location, str(error))
+        return None
+
+
+def _apply(column: NDArray[np.float64], entry: Entry, step_ns: int) -> None:
+    """Write one entry over what came before it."""
+    first, ticks = (round(seconds * SECOND_NS / step_ns) for seconds in (entry.time_s, entry.ramp_s))
+    if first >= len(column):
+        return
+    ramp = np.linspace(column[first], entry.value, ticks, endpoint=False)[: len(column) - first]
+    column[first:] = entry.value
+    column[first : first + len(ramp)] = ramp
