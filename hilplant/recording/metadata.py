@@ -1,0 +1,136 @@
+"""What a recording says about its run: configuration and versions, exact to the last bit."""
+
+import base64
+import json
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hilplant import __version__
+from hilplant.recording.format import FORMAT_VERSION
+
+
+class RecordedBench(Protocol):
+    """What a recording keeps of a bench."""
+
+    @property
+    def name(self) -> str:
+        """Name of the bench."""
+
+    @property
+    def step_ns(self) -> int:
+        """Length of a tick."""
+
+    @property
+    def parameter_row(self) -> NDArray[np.float64]:
+        """Packed parameters."""
+
+    @property
+    def tables(self) -> NDArray[np.float64]:
+        """Tables over the crank angle."""
+
+    @property
+    def state_row(self) -> NDArray[np.float64]:
+        """Packed state before the first tick."""
+
+    @property
+    def sources(self) -> Mapping[str, str]:
+        """Texts of the bench's files by their names."""
+
+
+@dataclass(frozen=True)
+class RunDescription:
+    """The metadata of a recording."""
+
+    name: str
+    step_ns: int
+    parameter_row: NDArray[np.float64]
+    tables: NDArray[np.float64]
+    state_row: NDArray[np.float64]
+    sources: dict[str, str]
+    start_utc: datetime  # when the recorder was ready; the first tick follows within the loop's start-up
+    build: dict[str, str]  # versions of everything that the outputs' bits depend on
+
+
+def current_build() -> dict[str, str]:
+    """Name everything here that the bits of an output depend on."""
+    from hilplant.jit import MODELS_HASH  # brings the compiler, which a reader does without
+
+    versions = {name: _version(name) for name in ("numpy", "numba", "llvmlite")}
+    return {
+        "models_hash": MODELS_HASH,
+        "python": platform.python_version(),
+        "cpu": _cpu(),
+        "hilplant": __version__,
+        **versions,
+    }
+
+
+def describe(bench: RecordedBench, start_utc: datetime) -> dict[str, str]:
+    """Return the metadata of a run of `bench`, as texts by key."""
+    return {
+        "format": FORMAT_VERSION,
+        "name": bench.name,
+        "step_ns": str(bench.step_ns),
+        "parameter_row": _encode(bench.parameter_row),
+        "tables": _encode(bench.tables),
+        "state_row": _encode(bench.state_row),
+        "sources": json.dumps(dict(bench.sources)),
+        "start_utc": start_utc.astimezone(UTC).isoformat(),
+        "build": json.dumps(current_build()),
+    }
+
+
+def parse(metadata: dict[str, str]) -> RunDescription:
+    """Read back what :func:`describe` has written.
+
+    Raises
+    ------
+    KeyError, ValueError
+        When something is missing or unreadable.
+    """
+    return RunDescription(
+        name=metadata["name"],
+        step_ns=int(metadata["step_ns"]),
+        parameter_row=_decode(metadata["parameter_row"]),
+        tables=_decode(metadata["tables"]),
+        state_row=_decode(metadata["state_row"]),
+        sources=json.loads(metadata["sources"]),
+        start_utc=datetime.fromisoformat(metadata["start_utc"]),
+        build=json.loads(metadata["build"]),
+    )
+
+
+def _encode(values: NDArray[np.float64]) -> str:
+    """Shape and little-endian float64 bytes, as text."""
+    exact = np.ascontiguousarray(values, dtype="<f8")
+    return json.dumps({"shape": exact.shape, "float64": base64.b64encode(exact.tobytes()).decode()})
+
+
+def _decode(text: str) -> NDArray[np.float64]:
+    stored = json.loads(text)
+    values = np.frombuffer(base64.b64decode(stored["float64"]), dtype="<f8")
+    return values.reshape(stored["shape"]).astype(np.float64)
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "not installed"
+
+
+def _cpu() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        lines = []
+    named = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return named[0] if named else platform.processor() or platform.machine()

@@ -1,0 +1,115 @@
+"""The daemon's handle on its recorder, a process of its own that drains the ring into a file."""
+
+import contextlib
+import json
+import select
+import subprocess
+import sys
+import threading
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import IO
+
+from hilplant.failure import Failure
+from hilplant.recording.metadata import RecordedBench, describe
+from hilplant.runtime.ring import Ring
+
+_START_TIMEOUT_S = 30.0
+
+
+class Recorder:
+    """A recorder at work. If it dies too early, one line on standard error says so and the run goes on."""
+
+    def __init__(self, child: subprocess.Popen[bytes], ring: Ring, path: Path) -> None:
+        """Watch over `child` from a thread that sleeps until it ends."""
+        self._child = child
+        self._ring = ring
+        self._path = path
+        self._ending = False
+        self._watch = threading.Thread(target=self._wait, daemon=True, name="recorder watch")
+        self._watch.start()
+
+    @property
+    def pid(self) -> int:
+        """The recorder's number among the processes."""
+        return self._child.pid
+
+    def alive(self) -> bool:
+        """Say whether the recorder still records."""
+        return self._watch.is_alive()
+
+    def finish(self, timeout: float = 30.0) -> None:
+        """Close the ring and wait until everything in it is in the file.
+
+        Raises
+        ------
+        Failure
+            When the recorder had died, or does not come to an end in `timeout` seconds.
+        """
+        self._ending = True
+        self._ring.close_writer()
+        with contextlib.suppress(OSError):
+            _pipe(self._child.stdin).close()
+        self._watch.join(timeout)
+        if self._watch.is_alive():
+            raise Failure(f"{self._path}: the recorder is still writing after {timeout:g} s")
+        _pipe(self._child.stdout).close()
+        if self._child.returncode != 0:
+            raise Failure(f"{self._path}: incomplete, {self._cause()}")
+
+    def _wait(self) -> None:
+        self._child.wait()
+        if not self._ending:
+            self._ring.forget_reader()
+            print(
+                f"{self._path}: no longer recorded, {self._cause()}; the run goes on",
+                file=sys.stderr,
+                flush=True,
+            )
+
+    def _cause(self) -> str:
+        code = self._child.returncode
+        return f"the recorder was killed by signal {-code}" if code < 0 else f"the recorder ended with code {code}"
+
+
+def start_recorder(ring: Ring, path: Path, bench: RecordedBench, loop_cpu: int | None = None) -> Recorder:
+    """Start a recorder for a run of `bench`; returns when its file is there and the ring waits for it.
+
+    Parameters
+    ----------
+    loop_cpu
+        The CPU that the recorder keeps clear of.
+
+    Raises
+    ------
+    Failure
+        When the file exists already or cannot be written.
+    """
+    metadata = describe(bench, datetime.now(UTC))
+    command = [sys.executable, "-m", "hilplant.recording.drain", ring.name, str(path)]
+    child = subprocess.Popen(
+        [*command, "" if loop_cpu is None else str(loop_cpu)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        start_new_session=True,
+    )
+    with contextlib.suppress(BrokenPipeError):  # its own answer says why it ended
+        _pipe(child.stdin).write(json.dumps(metadata).encode() + b"\n")
+        _pipe(child.stdin).flush()
+    answer = _answer(child)
+    if answer != "ready":
+        child.kill()
+        child.communicate()
+        raise Failure(answer or f"{path}: the recorder did not start")
+    return Recorder(child, ring, path)
+
+
+def _answer(child: subprocess.Popen[bytes]) -> str:
+    answers = _pipe(child.stdout)
+    ready, _, _ = select.select([answers], [], [], _START_TIMEOUT_S)
+    return answers.readline().decode().strip() if ready else ""
+
+
+def _pipe(pipe: IO[bytes] | None) -> IO[bytes]:
+    assert pipe is not None  # the recorder is always started with pipes
+    return pipe

@@ -1,0 +1,201 @@
+"""The ring between the real-time loop and the processes that watch it: shared memory, one writer, one reader.
+
+Nothing in it waits. The writer fills a slot in place, then moves the head; the reader copies, then moves the
+tail; neither writes what the other writes. A full ring loses the new row or frame and counts it. Before a
+reader has come the oldest are overwritten instead: a run that nobody records counts nothing as lost.
+
+What it relies on: an aligned 8-byte store is one store, and the stores of one thread become visible in order.
+x86-64 guarantees both. ARM64 guarantees the first only; there, data and head lie hundreds of instructions of
+the interpreter apart, more than a store buffer holds: sound in practice, not by the letter.
+"""
+
+import struct
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hilplant.bus.frame import Frame
+from hilplant.runtime.shared_memory import SharedMemory
+
+SENT, EXTENDED, FD, BITRATE_SWITCH, REMOTE, ERROR = (1 << bit for bit in range(6))
+
+#: One frame in the ring; the flags are the constants above.
+FRAME_DTYPE = np.dtype(
+    [
+        ("tick", "<i8"),
+        ("time_ns", "<i8"),
+        ("identifier", "<u4"),
+        ("flags", "u1"),
+        ("length", "u1"),
+        ("spare", "<u2"),
+        ("data", "u1", (64,)),
+    ]
+)
+_FRAME = struct.Struct("<qqIBBH64s")
+
+_MAGIC = 0x676E6972_6C6968  # "hilring"
+_HEADER_BYTES = 256
+# Places in the header, in 8-byte words. What never changes, what the writer writes and what the reader writes
+# lie on cache lines of their own.
+_MAGIC_AT, _WIDTH, _ROWS, _FRAMES = range(4)
+_ROW_HEAD, _FRAME_HEAD, _LOST, _HEARTBEAT, _CLOSED = range(8, 13)
+_ROW_TAIL, _FRAME_TAIL, _READER = range(16, 19)
+
+
+class Ring:
+    """Rows of floats and CAN frames on their way from the loop to the recorder.
+
+    The frames of a tick are written before its row is committed; a reader that takes the rows first and the
+    frames then has all frames of these rows.
+    """
+
+    def __init__(self, shared: SharedMemory) -> None:
+        """Find the ring in `shared`; use :meth:`create` or :meth:`attach`."""
+        words = memoryview(shared.bytes)[:_HEADER_BYTES].cast("q")
+        if words[_MAGIC_AT] != _MAGIC:
+            shared.close()
+            raise ValueError(f"{shared.name} is not a ring of this version of hilplant")
+        self._shared, self._memory, self._words = shared, shared.bytes, words
+        self._row_count, self._frame_count = words[_ROWS], words[_FRAMES]
+        shape = (self._row_count, words[_WIDTH])
+        self._rows: NDArray[np.float64] = np.ndarray(shape, np.float64, shared.bytes, _HEADER_BYTES)
+        self._frames_at = _HEADER_BYTES + self._rows.nbytes
+        self._frames = np.ndarray((self._frame_count,), FRAME_DTYPE, shared.bytes, self._frames_at)
+        self._scratch: NDArray[np.float64] = np.zeros(words[_WIDTH])
+        self._full = False
+        self._row_head, self._frame_head, self._lost = words[_ROW_HEAD], words[_FRAME_HEAD], words[_LOST]
+
+    @classmethod
+    def create(cls, row_width: int, rows: int = 16384, frames: int = 65536) -> "Ring":
+        """Make a ring for rows of `row_width` floats; its maker is the writer.
+
+        Raises
+        ------
+        OSError
+            When the shared memory does not hold it.
+        """
+        shared = SharedMemory.create(_HEADER_BYTES + rows * row_width * 8 + frames * FRAME_DTYPE.itemsize)
+        np.ndarray((len(shared.bytes),), np.uint8, shared.bytes)[:] = 0  # touch every page now
+        words = memoryview(shared.bytes)[:_HEADER_BYTES].cast("q")
+        for place, value in ((_WIDTH, row_width), (_ROWS, rows), (_FRAMES, frames), (_MAGIC_AT, _MAGIC)):
+            words[place] = value
+        return cls(shared)
+
+    @classmethod
+    def attach(cls, name: str) -> "Ring":
+        """Open the ring `name` of another process, to read; FileNotFoundError when it is gone."""
+        return cls(SharedMemory.attach(name))
+
+    @property
+    def name(self) -> str:
+        """What :meth:`attach` asks for."""
+        return self._shared.name
+
+    @property
+    def row_width(self) -> int:
+        """Floats in a row."""
+        return self._words[_WIDTH]
+
+    @property
+    def lost(self) -> int:
+        """Rows and frames that found the ring full."""
+        return self._words[_LOST]
+
+    @property
+    def heartbeat_ns(self) -> int:
+        """The last time the writer said that it is alive, on its own clock; 0 before the first."""
+        return self._words[_HEARTBEAT]
+
+    @property
+    def writer_closed(self) -> bool:
+        """The writer has written its last row."""
+        return self._words[_CLOSED] != 0
+
+    # The writer's side
+
+    def next_row(self) -> NDArray[np.float64]:
+        """Return the slot to fill in place; a scratch row that leads nowhere while the ring is full."""
+        head, words = self._row_head, self._words
+        self._full = head - words[_ROW_TAIL] >= self._row_count and words[_READER] != 0
+        row: NDArray[np.float64] = self._scratch if self._full else self._rows[head % self._row_count]
+        return row
+
+    def commit(self) -> None:
+        """Publish the row that :meth:`next_row` gave, or count it as lost."""
+        if self._full:
+            self._count_lost()
+            return
+        self._row_head += 1
+        self._words[_ROW_HEAD] = self._row_head
+
+    def write_frame(self, tick: int, time_ns: int, frame: Frame, sent: bool) -> None:
+        """Publish one frame that was received, or `sent`, in `tick` at `time_ns`; or count it as lost."""
+        words, head = self._words, self._frame_head
+        if head - words[_FRAME_TAIL] >= self._frame_count and words[_READER]:
+            self._count_lost()
+            return
+        identifier, data, extended, fd, bitrate_switch, remote, error = frame
+        flags = sent | extended << 1 | fd << 2 | bitrate_switch << 3 | remote << 4 | error << 5
+        at = self._frames_at + head % self._frame_count * 88
+        _FRAME.pack_into(self._memory, at, tick, time_ns, identifier, flags, len(data), 0, data)
+        self._frame_head = head + 1
+        words[_FRAME_HEAD] = head + 1
+
+    def _count_lost(self) -> None:
+        self._lost += 1
+        self._words[_LOST] = self._lost
+
+    def beat(self, now_ns: int) -> None:
+        """Say that the writer is alive."""
+        self._words[_HEARTBEAT] = now_ns
+
+    def forget_reader(self) -> None:
+        """Overwrite the oldest again instead of waiting for a reader that has died."""
+        self._words[_READER] = 0
+
+    def close_writer(self) -> None:
+        """Say that no more rows will come. The ring stays readable."""
+        self._words[_CLOSED] = 1
+
+    # The reader's side
+
+    def read_rows(self) -> NDArray[np.float64]:
+        """Take the rows written since the last call; from the first on the ring keeps what is not read."""
+        self._begin()
+        head, tail = self._words[_ROW_HEAD], self._words[_ROW_TAIL]
+        taken: NDArray[np.float64] = self._rows[np.arange(tail, head) % self._row_count]
+        self._words[_ROW_TAIL] = head
+        return taken
+
+    def read_frames(self) -> NDArray[np.void]:
+        """Take the frames written since the last call, as an array of ``FRAME_DTYPE``."""
+        self._begin()
+        head, tail = self._words[_FRAME_HEAD], self._words[_FRAME_TAIL]
+        taken: NDArray[np.void] = self._frames[np.arange(tail, head) % self._frame_count]
+        self._words[_FRAME_TAIL] = head
+        return taken
+
+    def _begin(self) -> None:
+        """On the first call, skip what the writer has overwritten, or is just overwriting; hold the rest."""
+        words = self._words
+        if words[_READER]:
+            return
+        for head, tail, count in (
+            (_ROW_HEAD, _ROW_TAIL, self._row_count),
+            (_FRAME_HEAD, _FRAME_TAIL, self._frame_count),
+        ):
+            if words[head] - words[tail] >= count:
+                words[tail] = words[head] - count + count // 8 + 1
+        words[_READER] = 1
+
+    def latest(self) -> NDArray[np.float64]:
+        """Copy the newest row without taking it, as any number of processes may; zeros before the first."""
+        while True:
+            head = self._words[_ROW_HEAD]
+            row: NDArray[np.float64] = self._rows[(head - 1) % self._row_count].copy()
+            if self._words[_ROW_HEAD] - head < self._row_count - 1:
+                return row
+
+    def close(self) -> None:
+        """Let go of the ring; the last one to do so removes it. Rows that were read stay valid."""
+        self._shared.close()
