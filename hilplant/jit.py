@@ -24,8 +24,8 @@ def _sources_hash() -> str:
     for room in ("models", "surrogates"):
         for source in sorted((package / room).glob("*.py")):
             digest.update(source.read_bytes())
-    digest.update((package / "signals.py").read_bytes())
-    digest.update(Path(__file__).read_bytes())
+    for name in ("jit.py", "signals.py", "units.py"):
+        digest.update((package / name).read_bytes())
     return digest.hexdigest()[:16]
 
 
@@ -42,9 +42,8 @@ MODELS_HASH = _sources_hash()
 
 
 def _cache_folder() -> Path:
-    if "NUMBA_CACHE_DIR" in os.environ:
-        return Path(os.environ["NUMBA_CACHE_DIR"])
-    folder = user_cache_path("hilplant") / f"compiled-{MODELS_HASH}"
+    root = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("hilplant"))
+    folder = root / f"compiled-{MODELS_HASH}"
     return folder if _writable(folder) else Path(tempfile.mkdtemp(prefix="hilplant-compiled-"))
 
 

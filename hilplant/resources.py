@@ -3,6 +3,8 @@
 from functools import cache
 from pathlib import Path
 
+from hilplant.failure import Failure
+
 
 @cache
 def shipped_root() -> Path:
@@ -36,8 +38,14 @@ def find(reference: str, beside: Path) -> Path | None:
 def named(kind: str, name: str | Path) -> Path:
     """Return the file that a user names: a path, or a shipped one of its `kind` by its name.
 
-    A path that exists comes first, then ``config/<kind>/<name>`` with or without its ending. A name that
-    is not found is returned as it is, for the reader to say so.
+    A path that exists comes first, then ``config/<kind>/<name>`` with or without its ending. A path that does not
+    exist is returned as it is, for the reader to say so.
+
+    Raises
+    ------
+    Failure
+        For a mere name that is none of the shipped ones.
+
     """
     given = Path(name)
     if given.is_file():
@@ -45,4 +53,7 @@ def named(kind: str, name: str | Path) -> Path:
     for candidate in (shipped("config", kind, f"{name}.yaml"), shipped("config", kind, str(name))):
         if candidate.is_file():
             return candidate
-    return given
+    if given.suffix or len(given.parts) != 1:
+        return given
+    known = ", ".join(sorted(path.stem for path in shipped("config", kind).glob("*.yaml")))
+    raise Failure(f"{name}: no such file, nor one of the shipped {kind}, which are {known}")

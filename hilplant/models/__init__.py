@@ -1,0 +1,1 @@
+"""Pure scalar physics, compiled: functions of (state, inputs, parameters) that store nothing."""

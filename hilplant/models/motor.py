@@ -1,0 +1,156 @@
+"""One step of the two-speed motor with dry friction, where standing still is an event and not a steep curve.
+
+Between events the motion is linear and known in closed form (:mod:`hilplant.models.armature`). While it slides, dry
+friction is a constant torque against the motion; when the speed comes to zero the shaft sticks, and only the current
+moves, until the motor's torque exceeds the dry torque. So a shaft at rest is at exactly zero speed, without creep or
+chatter, and friction takes energy out or does nothing.
+"""
+
+import math
+
+from hilplant.jit import compiled
+from hilplant.models.armature import Drive, Motion, acceleration, glide
+
+#: Stretches of sliding or sticking in one step, at most; a stop and a new start take three.
+STRETCHES = 24
+
+#: Evaluations of the motion in one search for an instant, at most: enough for bisection to the last bits.
+SEARCH_CAP = 80
+
+#: Times are found to this part of the stretch in which they lie.
+SEARCH_TOLERANCE = 1e-14
+
+
+@compiled
+def advance(motion: Motion, drive: Drive, duration: float) -> Motion:
+    """Return the motion after `duration` [s].
+
+    After `STRETCHES` stretches without an end the shaft stands still for what is left of the step: the answer
+    that adds no energy. Costs one exponential of the matrix, and some ten more for each event.
+    """
+    if drive.dry_torque == 0.0:
+        return glide(motion, drive, 0.0, duration)
+    left, swings = duration, 0
+    for _ in range(STRETCHES):
+        if motion.speed == 0.0 and abs(drive.constant * motion.current) <= drive.dry_torque:
+            motion, taken = stick(motion, drive, left)
+        else:
+            # an oscillation decays: if its first period does not bring the speed to zero, nothing after it does
+            motion, taken = slide(motion, drive, min(left, half_period(drive)) if swings < 2 else left)
+        swings = swings + 1 if motion.speed != 0.0 else 0
+        left -= taken
+        if left <= 0.0:
+            return motion
+    return Motion(held_current(motion.current, drive, left), 0.0, motion.turned)
+
+
+@compiled
+def held_current(current: float, drive: Drive, time: float) -> float:
+    """Return the current [A] after `time` at standstill."""
+    final = drive.voltage / drive.resistance
+    return final + (current - final) * math.exp(-time * drive.resistance / drive.inductance)
+
+
+@compiled
+def stick(motion: Motion, drive: Drive, left: float) -> tuple[Motion, float]:
+    """Stand still until the motor breaks away or the time is over; return the motion and the time taken.
+
+    The current approaches V/R without overshoot, so the instant at which K i reaches the dry torque is a logarithm.
+    There the current is set a few bits above it, so that the comparison that follows sees a sliding shaft.
+    """
+    final = drive.voltage / drive.resistance
+    threshold = math.copysign(drive.dry_torque / drive.constant, final)
+    if abs(final) > abs(threshold):
+        ratio = (final - motion.current) / (final - threshold)
+        wait = math.log(max(1.0, ratio)) * drive.inductance / drive.resistance
+        if wait < left:
+            return Motion(threshold * (1.0 + 1e-15), 0.0, motion.turned), wait
+    return Motion(held_current(motion.current, drive, left), 0.0, motion.turned), left
+
+
+@compiled
+def slide(motion: Motion, drive: Drive, stretch: float) -> tuple[Motion, float]:
+    """Slide in one direction until the speed comes to zero or the stretch is over; return motion and time taken."""
+    sign = math.copysign(1.0, motion.speed if motion.speed != 0.0 else motion.current)
+    torque = sign * drive.dry_torque
+    end = glide(motion, drive, torque, stretch)
+    below = stretch
+    if sign * end.speed >= 0.0:
+        below = instant_below_zero(motion, drive, sign, stretch) if dips(motion, end, drive, sign) else 0.0
+        if below == 0.0:
+            return end, stretch
+    instant = instant_of_zero(motion, drive, sign, below)
+    stop = glide(motion, drive, torque, instant)
+    return Motion(stop.current, 0.0, stop.turned), instant
+
+
+@compiled
+def dips(start: Motion, end: Motion, drive: Drive, sign: float) -> bool:
+    """Return whether the speed may have changed its sign between two ends at which it has the same.
+
+    It cannot while the motor's torque exceeds the dry torque, and while the speed falls the torque stays above it
+    if the voltage, less the back-EMF at the start, can drive that much current. Else it takes a speed that falls at
+    the start and rises at the end.
+    """
+    dry = drive.dry_torque
+    lasting = sign * (drive.voltage - drive.constant * start.speed) * drive.constant > drive.resistance * dry
+    if lasting and sign * drive.constant * start.current > dry:
+        return False
+    falls = sign * acceleration(start, drive, sign * dry) < 0.0
+    return falls and sign * acceleration(end, drive, sign * dry) > 0.0
+
+
+@compiled
+def half_period(drive: Drive) -> float:
+    """Return the time in which the speed can have one extremum at most [s]; endless without oscillation."""
+    half = 0.5 * (drive.resistance / drive.inductance - drive.damping / drive.inertia)
+    discriminant = half * half - drive.constant * drive.constant / (drive.inductance * drive.inertia)
+    return math.pi / math.sqrt(-discriminant) if discriminant < 0.0 else math.inf
+
+
+@compiled
+def instant_below_zero(motion: Motion, drive: Drive, sign: float, stretch: float) -> float:
+    """Return an instant at which a speed that dips within the stretch has changed its sign; 0 if it never does.
+
+    Bisection of the acceleration, which changes its sign once; start: the ends of the stretch; tolerance and cap:
+    `SEARCH_TOLERANCE`, `SEARCH_CAP`.
+    """
+    low, high = 0.0, stretch
+    for _ in range(SEARCH_CAP):
+        middle = 0.5 * (low + high)
+        point = glide(motion, drive, sign * drive.dry_torque, middle)
+        if sign * point.speed < 0.0:
+            return middle
+        if sign * acceleration(point, drive, sign * drive.dry_torque) < 0.0:
+            low = middle
+        else:
+            high = middle
+        if high - low <= SEARCH_TOLERANCE * stretch:
+            break
+    return 0.0
+
+
+@compiled
+def instant_of_zero(motion: Motion, drive: Drive, sign: float, below: float) -> float:
+    """Return the instant in (0, below] at which the speed comes to zero; at `below` its sign has changed.
+
+    Newton's method kept inside a shrinking bracket, else halving it. Start: the middle; tolerance:
+    `SEARCH_TOLERANCE` of `below`; cap: `SEARCH_CAP`; at the cap the middle of the bracket is the answer. Takes
+    four to six evaluations as a rule.
+    """
+    torque = sign * drive.dry_torque
+    low, high = 0.0, below
+    instant = 0.5 * below
+    for _ in range(SEARCH_CAP):
+        point = glide(motion, drive, torque, instant)
+        if sign * point.speed > 0.0:
+            low = instant
+        else:
+            high = instant
+        following = instant - point.speed / acceleration(point, drive, torque)
+        if not low <= following <= high:
+            following = 0.5 * (low + high)
+        if abs(following - instant) <= SEARCH_TOLERANCE * below:
+            return following
+        instant = following
+    return instant

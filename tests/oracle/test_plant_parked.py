@@ -1,0 +1,40 @@
+"""A parked wiper stands still for an hour, however it came there and whatever holds it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from hilplant.models.plant import simulate_rows
+from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State, pack
+from hilplant.signals import OUTPUT_INDEX, OUTPUTS
+
+MOTOR = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2), 1.983e-5, 1.582e-4, 0.0, 63.0)
+STIFF = Motor(Brush(8.0, 9e-5, 9.55e-4), Brush(3.9, 1.2e-5, 6.88e-4), 2e-9, 2e-3, 0.0, 1.0)
+BLOCK = 60_000
+HOUR_BLOCKS = 60
+
+
+@pytest.mark.parametrize(
+    ("motor", "dry", "relay_on", "brake"),
+    [(MOTOR, 0.0, 0.0, 0.0), (MOTOR, 0.045, 0.0, 0.0), (MOTOR, 0.045, 1.0, 60.0), (STIFF, 2e-4, 0.0, 0.0)],
+)
+def test_a_parked_wiper_keeps_its_angle_for_an_hour(
+    motor: Motor, dry: float, relay_on: float, brake: float
+) -> None:
+    switch, arm = ParkSwitch(0.0, 0.1, 0.02, 3.0), Arm(0.0, 0.5)
+    motor = motor._replace(coulomb_torque_n_m=dry)
+    parameters = pack(Parameters(1e-3, motor, switch, Load(1.0, 0.0035, 0.2738), arm, arm))
+    tables, outputs = np.zeros((2, 9, 2)), np.empty((BLOCK, len(OUTPUTS)))
+    inputs = np.tile([relay_on, 0.0, 13.5, 0.0, 0.0, brake], (BLOCK, 1))
+    state = pack(State(8.0, 250.0, 1.0, 0.0, 0.0, 0.0))
+    simulate_rows(state, inputs[:2000], parameters, tables, outputs)  # comes to rest
+    rest = state[2]
+    assert rest > 1.0
+    for _ in range(HOUR_BLOCKS):
+        simulate_rows(state, inputs, parameters, tables, outputs)
+        angles = outputs[:, OUTPUT_INDEX["crank_angle_rad"]]
+        assert np.abs(angles - rest).max() <= 1e-9
+        assert np.ptp(outputs[:, OUTPUT_INDEX["park_contact"]]) == 0.0
+    assert math.isfinite(state[0])
+    assert state[1] == 0.0
