@@ -23,6 +23,9 @@ def timeout_ns(place: Place, message: Any, entry: ReceiveEntry) -> int:
     if 0.0 < timeout_ms <= cycle_ms:
         text = f"timeout_ms must be longer than the message's cycle time of {cycle_ms} ms, not {timeout_ms:g}"
         place.note("timeout_ms", text=text)
+    if entry.protection is not None and not timeout_ms:
+        text = "a protected message needs a timeout_ms: after a loss, its counter is taken as it comes only then"
+        place.note("timeout_ms", text=text)
     return round(timeout_ms * MILLISECOND_NS)
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from hilplant.bench import BenchError, check_bench, load_bench
+from hilplant.failure import Failure
 from hilplant.resources import shipped
 
 LINKAGE = shipped("config", "linkages", "rhd_slave_driven.yaml").read_text()
@@ -181,5 +182,10 @@ def test_benches_that_extend_each_other_are_a_problem(tmp_path: Path) -> None:
 
 
 def test_a_bench_that_is_not_there_is_one_problem() -> None:
-    with pytest.raises(BenchError, match=r"^nowhere:1: cannot be read: no such file"):
+    with pytest.raises(BenchError, match=r"^nowhere\.yaml:1: cannot be read: no such file"):
+        load_bench("nowhere.yaml")
+
+
+def test_a_name_that_is_not_shipped_is_answered_with_those_that_are() -> None:
+    with pytest.raises(Failure, match=r"^nowhere: no such file, nor one of the shipped benches, which are .*default"):
         load_bench("nowhere")

@@ -1,0 +1,202 @@
+"""Messages of a bus database as functions between payloads and plant values; no socket, no clock.
+
+Both directions take the list of signals as an argument, so that the stand-in ECU uses the same mapping the
+other way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from hilplant.bus.bits import places
+from hilplant.bus.decoding import Decode, decoder
+from hilplant.bus.encoding import Encode, encoder
+from hilplant.bus.frame_layout import base_payload, check_message, check_overlap, selectors_of
+from hilplant.bus.mapping import Link, MappingError, SignalMapping, link
+from hilplant.bus.protection import Protection
+from hilplant.units import MILLISECOND_NS
+
+if TYPE_CHECKING:
+    from cantools.database.can.message import Message
+
+    from hilplant.signals import Signal
+
+__all__ = [
+    "MappingError",
+    "ReceivedMessage",
+    "SentMessage",
+    "SignalMapping",
+    "Timing",
+    "received_message",
+    "sent_message",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class ReceivedMessage:
+    """A message that is taken in.
+
+    `decode` returns a value for each of `targets`, indices into the list of signals; None for a multiplexed
+    signal that is not in this frame. A value outside its entry of `limits`, or not a number, must not be
+    used. Limits are the narrower of the plant's and the database's range, half a raw step wider, so that a
+    value that was rounded on its way over the bus does not fall out.
+    """
+
+    name: str
+    identifier: int
+    extended: bool
+    fd: bool
+    length: int
+    decode: Decode
+    targets: tuple[int, ...]
+    limits: tuple[tuple[float, float], ...]
+    timeout_ns: int = 0
+    protection: Protection | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SentMessage:
+    """A message that is sent.
+
+    `encode` takes the values of the whole list of signals and returns the payload and how many of them were
+    limited to what the frame can carry. `sources` are the indices that it reads, `on_change` those whose
+    change sends at once.
+    """
+
+    name: str
+    identifier: int
+    extended: bool
+    fd: bool
+    length: int
+    encode: Encode
+    sources: tuple[int, ...]
+    period_ns: int
+    offset_ns: int = 0
+    on_change: tuple[int, ...] = ()
+    protection: Protection | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """When a message is sent.
+
+    Each `period_ns` (None: the database's cycle time; 0: never by itself), first after `offset_ns`, and at
+    once when one of the plant's signals named in `on_change` changes.
+    """
+
+    period_ns: int | None = None
+    offset_ns: int = 0
+    on_change: tuple[str, ...] = ()
+
+
+def received_message(
+    message: Message,
+    mappings: Sequence[SignalMapping],
+    signals: Sequence[Signal],
+    timeout_ns: int = 0,
+    protection: Protection | None = None,
+) -> ReceivedMessage:
+    """Build a message to take in from its description in a database, and the mapping of some of its signals.
+
+    `signals` is the list whose values are to be set; `timeout_ns` is 0 where nobody minds its absence.
+
+    Raises
+    ------
+    MappingError
+        Naming the message, the signal, what is wrong and what would be right.
+
+    """
+    links = _links(message, mappings, signals)
+    _refuse_twice(message, links, [made.plant.name for made in links])
+    selectors = selectors_of(message, links)
+    check_overlap(message, [*selectors.values(), *(made.database for made in links)], protection)
+    return ReceivedMessage(
+        message.name,
+        message.frame_id,
+        message.is_extended_frame,
+        message.is_fd,
+        message.length,
+        decoder(links, selectors, message.length),
+        tuple(made.index for made in links),
+        tuple(_limits(made) for made in links),
+        timeout_ns,
+        protection,
+    )
+
+
+def sent_message(
+    message: Message,
+    mappings: Sequence[SignalMapping],
+    signals: Sequence[Signal],
+    timing: Timing | None = None,
+    protection: Protection | None = None,
+) -> SentMessage:
+    """Build a message to send; signals that are not mapped carry the database's initial value, or else 0.
+
+    Raises
+    ------
+    MappingError
+        Naming the message, the signal, what is wrong and what would be right.
+
+    """
+    timing = timing or Timing()
+    links = _links(message, mappings, signals)
+    _refuse_twice(message, links, [made.database.name for made in links])
+    for made in links:
+        if made.database.multiplexer_signal is not None or made.database.is_multiplexer:
+            text = "multiplexed signals can be received only; send it in a message of its own"
+            raise MappingError(message.name, made.database.name, text)
+    check_overlap(message, [made.database for made in links], protection)
+    return SentMessage(
+        message.name,
+        message.frame_id,
+        message.is_extended_frame,
+        message.is_fd,
+        message.length,
+        encoder(links, base_payload(message, {place for made in links for place in places(made.database)})),
+        tuple(made.index for made in links),
+        _period_ns(message, timing),
+        timing.offset_ns,
+        tuple(_watched(message, name, signals) for name in timing.on_change),
+        protection,
+    )
+
+
+def _links(message: Message, mappings: Sequence[SignalMapping], signals: Sequence[Signal]) -> list[Link]:
+    check_message(message)
+    if not mappings:
+        raise MappingError(message.name, None, "no signal is mapped; map one, or leave the message out")
+    return [link(message, mapping, signals) for mapping in mappings]
+
+
+def _refuse_twice(message: Message, links: Sequence[Link], targets: Sequence[str]) -> None:
+    """Refuse a target, in the plant or in the frame, that two mappings write."""
+    for position, (made, target) in enumerate(zip(links, targets, strict=True)):
+        if target in targets[:position]:
+            raise MappingError(message.name, made.database.name, f"{target} is written by two mappings; keep one")
+
+
+def _limits(made: Link) -> tuple[float, float]:
+    if made.table is not None:
+        return made.plant.minimum, made.plant.maximum
+    slack = 0.0 if made.database.is_float else abs(made.database.scale * made.scale) / 2.0
+    lowest, highest = made.bounds
+    return max(made.plant.minimum, lowest) - slack, min(made.plant.maximum, highest) + slack
+
+
+def _period_ns(message: Message, timing: Timing) -> int:
+    if timing.period_ns is not None:
+        return timing.period_ns
+    if not message.cycle_time:
+        raise MappingError(message.name, None, "the database states no cycle time; say how often to send it")
+    return int(message.cycle_time * MILLISECOND_NS)
+
+
+def _watched(message: Message, name: str, signals: Sequence[Signal]) -> int:
+    for index, signal in enumerate(signals):
+        if signal.name == name:
+            return index
+    known = ", ".join(signal.name for signal in signals)
+    raise MappingError(message.name, None, f"on_change names '{name}', which is none of {known}")

@@ -1,0 +1,47 @@
+"""Reads a bus database in any format that cantools knows: DBC, ARXML, KCD, SYM."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hilplant.bus.lean_import import without_asammdf
+from hilplant.failure import Failure
+
+if TYPE_CHECKING:
+    from cantools.database.can import Database
+
+_FORMATS = ("dbc", "arxml", "kcd", "sym")
+
+
+class DatabaseError(Failure):
+    """A bus database that cannot be read."""
+
+
+def load_database(path: str | Path) -> Database:
+    """Read a bus database.
+
+    It is not read strictly: real matrices have signals that overlap; only mapped messages need to be sound.
+
+    Raises
+    ------
+    DatabaseError
+        In one line, naming the file.
+
+    """
+    path = Path(path)
+    if path.suffix.lower()[1:] not in _FORMATS:
+        raise DatabaseError(f"{path}: a bus database ends in .{', .'.join(_FORMATS)}")
+    with without_asammdf():
+        from cantools.database import load_file  # a tenth of a second that not every command needs
+        from cantools.database.can import Database
+    try:
+        database = load_file(str(path), strict=False)
+    except OSError as error:
+        raise DatabaseError(f"{path} cannot be read: {error.strerror}") from error
+    except Exception as error:  # cantools' parsers let errors of every kind through
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise DatabaseError(f"{path} cannot be read as a bus database: {reason}") from error
+    if not isinstance(database, Database):
+        raise DatabaseError(f"{path} holds diagnostics, not messages")
+    return database

@@ -1,0 +1,150 @@
+"""Builds the function that turns values of the plant into a payload: straight-line Python, compiled once.
+
+Its bytes equal those of cantools. Values beyond what a signal may carry are limited, never refused, because
+the loop must go on; how many were limited is returned beside the payload.
+"""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from hilplant.bus.bits import is_whole_bytes, letter, places, raw_range, struct_format
+from hilplant.bus.mapping import Link
+
+Encode = Callable[[Sequence[float]], tuple[bytes, int]]
+
+
+def encoder(links: Sequence[Link], base: bytes) -> Encode:
+    """Return a function from all values to a payload and the number of values that had to be limited.
+
+    `base` is the payload with everything that is not mapped; the bits of mapped signals are 0 in it.
+    """
+    names: dict[str, Any] = {"from_bytes": int.from_bytes}
+    fields = [f"r{index}" for index in range(len(links))]
+    raws = [_raw(names, f, link) for f, link in zip(fields, links, strict=True)]
+    inside = " and ".join(_inside(f, link) for f, link in zip(fields, links, strict=True))
+    names["limited"] = _limited(names, links, raws)
+    text = f"""
+def encode(values):
+    limits = 0
+    try:
+        {"; ".join(f"{field} = {raw}" for field, raw in zip(fields, raws, strict=True))}
+        inside = {inside}
+    except (ValueError, OverflowError, KeyError):
+        inside = False
+    if not inside:
+        ({"".join(f"{field}, " for field in fields)}), limits = limited(values)
+    return {_payload(names, links, fields, base)}, limits
+"""
+    exec(compile(text, "<encode>", "exec"), names)
+    encode: Encode = names["encode"]
+    return encode
+
+
+def _raw(names: dict[str, Any], field: str, link: Link) -> str:
+    """Return the expression of a raw value; cantools' own order of operations comes last."""
+    value = f"values[{link.index}]"
+    if link.table is not None:
+        names[f"table_{field}"] = _inverted(link.table)
+        return f"table_{field}[{value}]"
+    if link.offset != 0.0:
+        value = f"({value} - {float(link.offset)!r})"
+    if link.scale != 1.0:
+        value = f"{value} / {float(link.scale)!r}"
+    scale, offset = link.database.scale, link.database.offset
+    if (scale, offset) != (1, 0):
+        value = f"({value} - {offset!r}) / {scale!r}"
+    return value if link.database.is_float else f"round({value})"
+
+
+def _inverted(table: dict[int, float]) -> dict[float, int]:
+    """Return the raw value of each choice: the first that is named for it."""
+    return {value: raw for raw, value in reversed(table.items())}
+
+
+def _inside(field: str, link: Link) -> str:
+    if link.table is not None:
+        return "True"
+    lowest, highest = raw_range(link.database)
+    return f"{lowest!r} <= {field} <= {highest!r}"
+
+
+def _limited(names: dict[str, Any], links: Sequence[Link], raws: Sequence[str]) -> Callable[..., Any]:
+    """Return the slow way to all raw values, for the rare case that one of them does not fit."""
+    raw_of = [eval(f"lambda values: {raw}", names) for raw in raws]
+    limits = [_limit(link) for link in links]
+
+    def limited(values: Sequence[float]) -> tuple[list[float], int]:
+        results = [limit(raw, values) for limit, raw in zip(limits, raw_of, strict=True)]
+        return [raw for raw, _ in results], sum([count for _, count in results])
+
+    return limited
+
+
+def _limit(link: Link) -> Callable[..., tuple[float, int]]:
+    lowest, highest = raw_range(link.database)
+    rest = min(max(lowest, 0), highest)
+    if link.table:
+        raws = _inverted(link.table)
+        rest = raws[min(raws)]
+    counts = int(link.plant.kind != "count")
+    rises = link.scale * link.database.scale > 0.0
+
+    def limit(raw: Callable[[Sequence[float]], float], values: Sequence[float]) -> tuple[float, int]:
+        value = values[link.index]
+        try:
+            wanted = raw(values)
+        except (ValueError, OverflowError, KeyError):  # not a number, infinite, or not a choice
+            if link.table or math.isnan(value):
+                return rest, counts
+            return (highest if (value > 0.0) == rises else lowest), counts
+        if link.table or lowest <= wanted <= highest:
+            return wanted, 0
+        if math.isnan(wanted):
+            return rest, counts
+        return (highest if wanted > highest else lowest), counts
+
+    return limit
+
+
+def _payload(names: dict[str, Any], links: Sequence[Link], fields: Sequence[str], base: bytes) -> str:
+    """Return the expression that puts raw values into a payload: one call of struct where it serves."""
+    orders = {link.database.byte_order for link in links}
+    if len(orders) == 1 and not any(base) and all(is_whole_bytes(link.database) for link in links):
+        pairs = sorted(zip(links, fields, strict=True), key=lambda pair: min(places(pair[0].database)))
+        names["pack"] = struct.Struct(struct_format([link.database for link, _ in pairs], len(base))).pack
+        return f"pack({', '.join(field for _, field in pairs)})"
+    little = [_placed(names, f, link, len(base)) for f, link in zip(fields, links, strict=True) if _is_little(link)]
+    big = [_placed(names, f, link, len(base)) for f, link in zip(fields, links, strict=True) if not _is_little(link)]
+    if not big:
+        return f"({_union(little, base, 'little')}).to_bytes({len(base)}, 'little')"
+    whole = _union(big, base, "big")
+    if little:
+        whole += f" | from_bytes(({' | '.join(little)}).to_bytes({len(base)}, 'little'), 'big')"
+    return f"({whole}).to_bytes({len(base)}, 'big')"
+
+
+def _is_little(link: Link) -> bool:
+    return link.database.byte_order == "little_endian"
+
+
+def _union(parts: Sequence[str], base: bytes, order: str) -> str:
+    constant = int.from_bytes(base, "little" if order == "little" else "big")
+    return " | ".join([*parts, *([str(constant)] if constant else [])])
+
+
+def _placed(names: dict[str, Any], field: str, link: Link, length: int) -> str:
+    """Return the expression of a raw value's bits at their place in the payload, seen as one whole number."""
+    signal = link.database
+    lowest = places(signal)[0]
+    shift = lowest if _is_little(link) else 8 * (length - 1 - lowest // 8) + lowest % 8
+    bits = field
+    if signal.is_float:
+        names[f"pack_{field}"] = struct.Struct(f"<{letter(signal)}").pack
+        bits = f"from_bytes(pack_{field}({field}), 'little')"
+    elif signal.is_signed:
+        bits = f"({field} & {(1 << signal.length) - 1})"
+    return f"{bits} << {shift}" if shift else bits

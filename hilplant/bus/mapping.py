@@ -1,0 +1,200 @@
+"""Ties one signal of a bus database to one signal of the plant, and refuses what cannot work."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from hilplant.bus.bits import raw_range
+from hilplant.failure import Failure
+
+if TYPE_CHECKING:
+    from cantools.database.can.message import Message
+    from cantools.database.can.signal import Signal as DatabaseSignal
+
+    from hilplant.signals import Signal
+
+#: Names of a flag's two values that a choice may be mapped to.
+FLAG_LABELS = {"off": 0.0, "false": 0.0, "0": 0.0, "on": 1.0, "true": 1.0, "1": 1.0}
+
+#: What a raw value that no choice stands for becomes: below the range of every flag and choice.
+NO_CHOICE = -1.0
+
+
+class MappingError(Failure):
+    """A mapping between a bus database and the plant that cannot work."""
+
+    def __init__(self, message: str, signal: str | None, text: str) -> None:
+        super().__init__(f"{message}.{signal}: {text}" if signal else f"{message}: {text}")
+        self.message = message
+        self.signal = signal
+        self.text = text
+
+
+@dataclass(frozen=True, slots=True)
+class SignalMapping:
+    """One line of a mapping: plant value = database's physical value * scale + offset, in both directions.
+
+    `choices` leads from the labels of the database's value table to those of the plant's choice (of a flag:
+    off, on). `invert` swaps 0 and 1 of a flag.
+    """
+
+    database_signal: str
+    plant_signal: str
+    scale: float = 1.0
+    offset: float = 0.0
+    choices: Mapping[str, str] | None = None
+    invert: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A mapping that was found to work.
+
+    `table` holds the plant's value for each raw value where choices decide; otherwise `scale` and `offset`,
+    in which an inversion is already contained, lead from the physical value to the plant's. `bounds` are the
+    lowest and highest value in the plant's terms that the database permits.
+    """
+
+    database: DatabaseSignal
+    plant: Signal
+    index: int
+    scale: float
+    offset: float
+    table: dict[int, float] | None
+    bounds: tuple[float, float]
+
+
+def link(message: Message, mapping: SignalMapping, signals: Sequence[Signal]) -> Link:
+    """Look both ends of a mapping up and check that values can pass between them.
+
+    Raises
+    ------
+    MappingError
+        When an end is unknown, or choices, kind or range do not fit.
+
+    """
+    database = _database_signal(message, mapping.database_signal)
+    index = next((i for i, signal in enumerate(signals) if signal.name == mapping.plant_signal), None)
+    if index is None:
+        known = ", ".join(signal.name for signal in signals)
+        raise MappingError(
+            message.name,
+            database.name,
+            f"the plant has no signal '{mapping.plant_signal}' here; it has {known}",
+        )
+    plant = signals[index]
+    try:
+        scale, offset = _line(mapping, plant)
+        table = _table(database, plant, mapping)
+        bounds = _table_bounds(table) if table else _line_bounds(database, scale, offset)
+        made = Link(database, plant, index, scale, offset, table, bounds)
+        _check_kind(made)
+    except ValueError as error:
+        raise MappingError(message.name, database.name, str(error)) from error
+    return made
+
+
+def _database_signal(message: Message, name: str) -> DatabaseSignal:
+    for signal in message.signals:
+        if signal.name == name:
+            return signal
+    known = ", ".join(signal.name for signal in message.signals)
+    raise MappingError(message.name, name, f"the message has no such signal; it has {known or 'none'}")
+
+
+def _line(mapping: SignalMapping, plant: Signal) -> tuple[float, float]:
+    """Return scale and offset with the inversion of a flag contained."""
+    if mapping.scale == 0.0:
+        raise ValueError("scale must not be 0")
+    if not mapping.invert:
+        return mapping.scale, mapping.offset
+    if plant.kind != "flag":
+        raise ValueError(f"only a flag can be inverted, and {plant.name} is a {plant.kind}")
+    return -mapping.scale, 1.0 - mapping.offset
+
+
+def _table(database: DatabaseSignal, plant: Signal, mapping: SignalMapping) -> dict[int, float] | None:
+    """Return the plant's value for each raw value; None where numbers are mapped by their value."""
+    labels = {str(label): int(raw) for raw, label in (database.choices or {}).items()}
+    if mapping.choices is None:
+        if plant.kind != "choice" or not labels:
+            return None
+        lower = {label.lower(): label for label in labels}
+        chosen = {lower[name]: name for name in plant.choices if name in lower}
+    else:
+        chosen = dict(mapping.choices)
+    if (mapping.scale, mapping.offset) != (1.0, 0.0):
+        raise ValueError("choices take no scale and no offset")
+    if database.is_float:
+        raise ValueError("a float cannot carry choices")
+    values = _plant_values(plant)
+    table = {_raw(labels, label): _value(values, plant, name) for label, name in chosen.items()}
+    if missing := [name for name in plant.choices if float(plant.choices.index(name)) not in table.values()]:
+        has = ", ".join(labels)
+        raise ValueError(f"choices must say which of {has} stands for {', '.join(missing)} of {plant.name}")
+    return {raw: 1.0 - value for raw, value in table.items()} if mapping.invert else table
+
+
+def _plant_values(plant: Signal) -> dict[str, float]:
+    if plant.kind == "flag":
+        return FLAG_LABELS
+    if plant.kind == "choice":
+        return {name: float(index) for index, name in enumerate(plant.choices)}
+    raise ValueError(f"choices are for a flag or a choice, and {plant.name} is a {plant.kind}")
+
+
+def _raw(labels: dict[str, int], label: str) -> int:
+    if label not in labels:
+        has = ", ".join(labels) or "no value table"
+        raise ValueError(f"its value table has no '{label}'; it has {has}")
+    return labels[label]
+
+
+def _value(values: dict[str, float], plant: Signal, name: str) -> float:
+    if name.lower() not in values:
+        raise ValueError(f"{plant.name} has no choice '{name}'; it has {', '.join(values)}")
+    return values[name.lower()]
+
+
+def _table_bounds(table: dict[int, float]) -> tuple[float, float]:
+    return min(table.values()), max(table.values())
+
+
+def _line_bounds(database: DatabaseSignal, scale: float, offset: float) -> tuple[float, float]:
+    lowest, highest = raw_range(database)
+    ends = [(raw * database.scale + database.offset) * scale + offset for raw in (lowest, highest)]
+    return min(ends), max(ends)
+
+
+def _check_kind(made: Link) -> None:
+    """Refuse numbers that can never be a value of the plant's signal, or not all of its values."""
+    plant, (lowest, highest) = made.plant, made.bounds
+    low, high = plant.minimum, plant.maximum
+    if plant.kind in ("flag", "choice"):
+        if not _is_whole(made):
+            raise ValueError(f"{plant.name} is a {plant.kind}, so whole numbers must arrive; give choices or a scale")
+        if missing := [value for value in range(int(low), int(high) + 1) if not _can_carry(made, value)]:
+            text = ", ".join(str(value) for value in missing)
+            raise ValueError(f"it cannot carry {text} of {plant.name}, which takes all of {low:g} to {high:g}")
+    elif lowest > high or highest < low:
+        unit = f" {plant.unit}" if plant.unit else ""
+        raise ValueError(
+            f"after scaling it carries {lowest:g} to {highest:g}{unit}, never within {plant.name}'s "
+            f"{low:g} to {high:g}{unit}"
+        )
+
+
+def _is_whole(made: Link) -> bool:
+    """Say whether nothing but whole numbers can arrive at the plant."""
+    steps = (made.database.scale * made.scale, made.database.offset * made.scale + made.offset)
+    return made.table is not None or (not made.database.is_float and all(float(step).is_integer() for step in steps))
+
+
+def _can_carry(made: Link, value: float) -> bool:
+    if made.table is not None:
+        return value in made.table.values()
+    raw = ((value - made.offset) / made.scale - made.database.offset) / made.database.scale
+    lowest, highest = raw_range(made.database)
+    return raw.is_integer() and lowest <= raw <= highest

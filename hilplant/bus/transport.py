@@ -1,0 +1,133 @@
+"""Opens CAN interfaces; the only file that uses python-can.
+
+SocketCAN is driven directly, because python-can spends five system calls where one serves; every other
+interface that python-can knows is driven through it, polled, without its threads.
+"""
+
+import contextlib
+from typing import Any
+
+from hilplant.bus.frame import Frame
+from hilplant.bus.interface import SendResult, Transport, TransportError
+from hilplant.bus.lean_import import without_asammdf
+from hilplant.bus.socketcan import open_socketcan
+
+with without_asammdf():
+    import can
+
+__all__ = ["PythonCan", "SendResult", "Transport", "TransportError", "open_transport"]
+
+
+def open_transport(arguments: dict[str, Any]) -> Transport:
+    """Open the interface that a bench names: `interface`, `channel` and whatever else that interface takes.
+
+    Raises
+    ------
+    TransportError
+        In one line, with what would be right.
+
+    """
+    interface = arguments.get("interface")
+    if not interface:
+        raise TransportError(f"the bus names no interface; there are {_known()}")
+    if interface == "socketcan":
+        return open_socketcan(arguments)
+    return PythonCan(arguments)
+
+
+class PythonCan:
+    """An interface of python-can; see `Transport`."""
+
+    def __init__(self, arguments: dict[str, Any]) -> None:
+        self._arguments = dict(arguments)
+        self._bus = _open(self._arguments)
+        self._up = True
+
+    @property
+    def up(self) -> bool:
+        """Whether frames can pass."""
+        return self._up
+
+    def receive(self, limit: int) -> list[Frame]:
+        """Return the frames that have arrived, at most `limit`."""
+        frames: list[Frame] = []
+        try:
+            while self._up and len(frames) < limit:
+                message = self._bus.recv(0)
+                if message is None:
+                    break
+                frames.append(_frame(message))
+        except Exception:  # drivers raise whatever their libraries raise
+            self._up = False
+        return frames
+
+    def send(self, frame: Frame) -> SendResult:
+        """Hand a frame over to the driver; one that it does not take now counts as a full queue."""
+        if not self._up:
+            return SendResult.DOWN
+        try:
+            self._bus.send(_message(frame), timeout=0)
+        except can.CanError:
+            return SendResult.FULL
+        except ValueError:
+            return SendResult.REFUSED
+        except Exception:  # the device is gone; see receive
+            self._up = False
+            return SendResult.DOWN
+        return SendResult.SENT
+
+    def reopen(self) -> bool:
+        """Try once with a new bus object."""
+        self.close()
+        with contextlib.suppress(TransportError):
+            self._bus = _open(self._arguments)
+            self._up = True
+        return self._up
+
+    def close(self) -> None:
+        """Shut the bus down."""
+        self._up = False
+        with contextlib.suppress(Exception):
+            self._bus.shutdown()
+
+
+def _open(arguments: dict[str, Any]) -> can.BusABC:
+    """Open a bus by the bench's arguments alone; python-can's own configuration files are left aside."""
+    interface = arguments["interface"]
+    if interface not in can.VALID_INTERFACES:
+        raise TransportError(f"python-can has no interface '{interface}'; there are {_known()}")
+    try:
+        return can.Bus(**arguments, ignore_config=True)
+    except Exception as error:  # drivers raise whatever their libraries raise
+        reason = " ".join(str(error).split()) or type(error).__name__
+        given = ", ".join(f"{name}: {value}" for name, value in arguments.items() if name != "interface")
+        raise TransportError(
+            f"the interface {interface} ({given or 'no arguments'}) cannot be opened: {reason}"
+        ) from error
+
+
+def _known() -> str:
+    return ", ".join(sorted(can.VALID_INTERFACES))
+
+
+def _frame(message: can.Message) -> Frame:
+    return Frame(
+        message.arbitration_id,
+        bytes(message.data),
+        message.is_extended_id,
+        message.is_fd,
+        message.bitrate_switch,
+        message.is_remote_frame,
+        message.is_error_frame,
+    )
+
+
+def _message(frame: Frame) -> can.Message:
+    return can.Message(
+        arbitration_id=frame.identifier,
+        is_extended_id=frame.extended,
+        is_remote_frame=frame.remote,
+        is_fd=frame.fd,
+        bitrate_switch=frame.bitrate_switch,
+        data=frame.data,
+    )

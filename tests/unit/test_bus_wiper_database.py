@@ -1,0 +1,83 @@
+"""The project's own database is complete, sound, and told as it is in the documentation."""
+
+import re
+from pathlib import Path
+
+import pytest
+from cantools.database.can import Database
+from cantools.database.can.message import Message
+from cantools.database.can.signal import Signal
+
+from hilplant.signals import MODES, SCREENS, STATUS
+
+ROOT = Path(__file__).parents[2]
+WIPER = Database(strict=True)
+WIPER.add_dbc_file(str(ROOT / "dbc" / "wiper.dbc"))
+AT_ONCE = ("MotorStatus", "ParkSwitch", "PlantStatus", "LossFaults")  # sent at changes too, so that nothing waits for its cycle
+MESSAGES = pytest.mark.parametrize("message", WIPER.messages, ids=lambda message: message.name)
+
+
+@MESSAGES
+def test_every_message_says_who_sends_it_how_often_and_what_it_is(message: Message) -> None:
+    assert message.senders in (["ECU"], ["PLANT"])
+    assert message.receivers == {"ECU", "PLANT"} - set(message.senders)
+    assert message.cycle_time
+    assert message.send_type == ("CyclicAndEvent" if message.name in AT_ONCE else "Cyclic")
+    assert message.comment
+    assert not message.is_fd
+
+
+@MESSAGES
+def test_every_signal_says_what_it_is_and_what_it_can_be(message: Message) -> None:
+    for signal in message.signals:
+        assert signal.comment
+        assert signal.minimum is not None
+        assert signal.maximum is not None
+        assert signal.byte_order == "little_endian"
+        assert signal.unit or signal.choices or float(signal.scale) == 1.0
+        for physical in (signal.minimum, signal.maximum):
+            raw = signal.conversion.numeric_scaled_to_raw(physical)
+            lowest = -(1 << signal.length - 1) if signal.is_signed else 0
+            assert lowest <= raw < lowest + (1 << signal.length)
+
+
+def test_value_tables_hold_the_plants_own_names() -> None:
+    tables = {
+        signal.name: {raw: str(label).lower() for raw, label in signal.choices.items()}
+        for message in WIPER.messages
+        for signal in message.signals
+        if signal.choices
+    }
+    assert tables["Mode"] == dict(enumerate(MODES))
+    assert tables["Screen"] == dict(enumerate(SCREENS))
+    assert set(tables) == {"Mode", "Screen", "RelayOn", "RelayFast", "ParkContact", "Guard"}
+
+
+def test_every_count_of_the_status_has_a_signal() -> None:
+    from_plant = [m for m in WIPER.messages if m.senders == ["PLANT"] and m.frame_id >= 0x210]
+    counts = [signal for message in from_plant for signal in message.signals if signal.name != "Guard"]
+    assert len(counts) == len(STATUS)
+
+
+def test_the_documentations_table_of_frames_is_the_databases() -> None:
+    page = (ROOT / "docs" / "can.md").read_text(encoding="utf-8")
+    rows = [line for line in page.splitlines() if re.match(r"\| 0x[0-9a-f]+ ", line)]
+    assert rows == [row for message in WIPER.messages for row in _rows(message)]
+
+
+def _rows(message: Message) -> list[str]:
+    """Return the rows of a message in the table of the documentation, one for each signal."""
+    head = f"| 0x{message.frame_id:x} {message.name} | {message.senders[0]} | {message.cycle_time}"
+    head += "+" if message.send_type == "CyclicAndEvent" else ""
+    return [f"{head} | {signal.name} | {_bits(signal)} | {_unit(signal)} |" for signal in message.signals]
+
+
+def _bits(signal: Signal) -> str:
+    kind = "i" if signal.is_signed else "u"
+    return f"{signal.start}: {kind}{signal.length}"
+
+
+def _unit(signal: Signal) -> str:
+    if signal.choices:
+        return ", ".join(f"{raw} {label}" for raw, label in sorted(signal.choices.items()))
+    return f"{signal.scale:g} {signal.unit}".strip() if signal.unit else "count"
