@@ -85,6 +85,7 @@ STATUS = (
     _count("wrong_counter", "protected frames whose alive counter is out of sequence"),
     _count("timeout", "times a supervised message stayed away"),
     _count("queue_full", "frames dropped because the interface took no more"),
+    _count("missed_frame", "frames that the system dropped because the loop did not read them in time"),
     _count("link_down", "times the interface was lost"),
     _count("saturated", "sent values that were limited to what their frame can carry"),
     _count("ring_lost", "ticks or frames the recorder was too slow to take"),

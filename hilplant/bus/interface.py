@@ -27,6 +27,10 @@ class Transport(Protocol):
     def up(self) -> bool:
         """Whether frames can pass; once false, `reopen` is needed."""
 
+    @property
+    def missed(self) -> int:
+        """How many frames the system dropped before they could be received, as far as it tells."""
+
     def receive(self, limit: int) -> list[Frame]:
         """Return the frames that have arrived, at most `limit`; error frames are marked as such."""
 

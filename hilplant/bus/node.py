@@ -18,6 +18,9 @@ from hilplant.signals import STATUS, STATUS_INDEX
 #: Causes in the order of ``signals.STATUS``; the node counts those that arise on the bus.
 CAUSES = tuple(signal.name for signal in STATUS)
 
+#: How often the interface is asked what it has missed; each time is a system call.
+_CENSUS_EVERY_NS = 100_000_000
+
 
 @dataclass(frozen=True, slots=True)
 class LinkSettings:
@@ -92,6 +95,7 @@ class Node:
         self._pending: deque[Frame] = deque()
         self._was_up = True
         self._reopen_ns = 0
+        self._census_ns = 0
         self._reopen_pause_ns = settings.reopen_first_ns
 
     def receive(self, now_ns: int, shed: bool = False) -> None:
@@ -108,6 +112,9 @@ class Node:
             cause = self._take(frame, now_ns)
             if cause is not None:
                 self._count(cause)
+        if now_ns >= self._census_ns:
+            self._census_ns = now_ns + _CENSUS_EVERY_NS
+            self.counts[STATUS_INDEX["missed_frame"]] = self._transport.missed
         self._supervise(now_ns)
 
     def send(self, now_ns: int, values: Sequence[float]) -> None:

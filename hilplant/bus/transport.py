@@ -48,6 +48,11 @@ class PythonCan:
         """Whether frames can pass."""
         return self._up
 
+    @property
+    def missed(self) -> int:
+        """Always 0: python-can has no word for it."""
+        return 0
+
     def receive(self, limit: int) -> list[Frame]:
         """Return the frames that have arrived, at most `limit`."""
         frames: list[Frame] = []

@@ -66,7 +66,7 @@ class Ring:
         self._row_head, self._frame_head, self._lost = words[_ROW_HEAD], words[_FRAME_HEAD], words[_LOST]
 
     @classmethod
-    def create(cls, row_width: int, rows: int = 16384, frames: int = 65536) -> "Ring":
+    def create(cls, row_width: int, rows: int = 16384, frames: int = 262144) -> "Ring":
         """Make a ring for rows of `row_width` floats; its maker is the writer.
 
         Raises

@@ -2,6 +2,7 @@
 
 import errno
 import socket
+import struct
 from collections import deque
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ class FakeSocket:
         self.sent: list[bytes] = []
         self.send_error = self.bind_error = self.pending_error = 0
         self.options: list[tuple[int, int, int]] = []
+        self.dropped = 0
 
     def setsockopt(self, level: int, name: int, value: int) -> None:
         self.options.append((level, name, value))
@@ -31,8 +33,8 @@ class FakeSocket:
         if self.bind_error:
             raise OSError(self.bind_error, "bind")
 
-    def getsockopt(self, level: int, name: int) -> int:
-        return self.pending_error
+    def getsockopt(self, level: int, name: int, size: int = 0) -> int | bytes:
+        return struct.pack("=9I", *range(8), self.dropped) if size else self.pending_error
 
     def recv_into(self, buffer: bytearray) -> int:
         answer = self.incoming.popleft() if self.incoming else errno.EAGAIN
@@ -164,12 +166,20 @@ def test_a_lost_link_keeps_what_had_arrived_and_needs_a_new_socket(kernel: Kerne
     assert len(kernel.sockets[-1].sent) == 1
 
 
-def test_bus_off_needs_a_new_start(kernel: Kernel) -> None:
+def test_a_bus_off_frame_is_an_error_frame_and_the_socket_stays_good(kernel: Kernel) -> None:
     transport, fake = opened(kernel)
     fake.incoming.append(raw(0x2000_0040, bytes(8)))
     assert transport.receive(5) == [Frame(0x40, bytes(8), error=True)]
-    assert not transport.up
+    assert transport.up
+
+
+def test_what_the_kernel_dropped_is_known_and_outlives_the_socket(kernel: Kernel) -> None:
+    transport, fake = opened(kernel)
+    fake.dropped = 7
+    assert transport.missed == 7
     assert transport.reopen()
+    kernel.sockets[-1].dropped = 2
+    assert transport.missed == 9
 
 
 def _no_can(*_: int) -> None:

@@ -13,7 +13,8 @@ from hilplant.signals import MODES, SCREENS, STATUS
 ROOT = Path(__file__).parents[2]
 WIPER = Database(strict=True)
 WIPER.add_dbc_file(str(ROOT / "dbc" / "wiper.dbc"))
-AT_ONCE = ("MotorStatus", "ParkSwitch", "PlantStatus", "LossFaults")  # sent at changes too, so that nothing waits for its cycle
+# sent at changes too, so that nothing waits for its cycle
+AT_ONCE = ("MotorStatus", "ParkSwitch", "PlantStatus", "LossFaults")
 MESSAGES = pytest.mark.parametrize("message", WIPER.messages, ids=lambda message: message.name)
 
 

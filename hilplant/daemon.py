@@ -1,0 +1,71 @@
+"""What `hilplant run` does: a bench on its interface, with a recorder beside it when one is asked for."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import typer
+
+from hilplant.bench import Bench, load_bench
+from hilplant.recording.recorder import start_recorder
+from hilplant.runtime.loop import ROW_WIDTH
+from hilplant.runtime.ring import Ring
+from hilplant.runtime.scheduling import Privilege
+from hilplant.runtime.server import Summary, serve
+
+
+@contextmanager
+def recording(bench: Bench, path: Path | None) -> Iterator[Ring | None]:
+    """Give the loop a ring that another process drains into `path`; None where nothing is to be recorded."""
+    if path is None:
+        yield None
+        return
+    ring = Ring.create(ROW_WIDTH)
+    try:
+        recorder = start_recorder(ring, path, bench, loop_cpu=bench.loop.cpu)
+        try:
+            yield ring
+        finally:
+            ring.close_writer()
+            recorder.finish()
+    finally:
+        ring.close()
+
+
+def run_daemon(name: str, seconds: float | None, record: Path | None, channel: str | None) -> Summary:
+    """Serve a bench and say on the terminal how it started and how it ended."""
+    bench = load_bench(name)
+    if channel is not None:
+        bench = replace(bench, interface={**bench.interface, "channel": channel})
+    with recording(bench, record) as ring:
+        summary = serve(bench, seconds, ring, on_start=lambda privileges: _say_start(bench, privileges))
+    _say_end(summary, record)
+    return summary
+
+
+def _say_start(bench: Bench, privileges: list[Privilege]) -> None:
+    interface = " ".join(str(value) for value in bench.interface.values())
+    missing = [f"  without {p.name}: {p.mend}" for p in privileges if not p.granted]
+    typer.echo(f"{bench.name} serves on {interface}, a tick every {bench.step_ns / 1e6:g} ms; Ctrl-C ends it")
+    for line in missing:
+        typer.echo(line, err=True)
+    if missing:
+        typer.echo("  punctuality is not what it could be: hilplant doctor says more", err=True)
+
+
+def _say_end(summary: Summary, record: Path | None) -> None:
+    typer.echo(
+        f"{summary.ticks} ticks, {summary.overruns} overruns, late by p50 {summary.latency_p50_us:g} us, "
+        f"p99 {summary.latency_p99_us:g} us, at most {summary.latency_max_us:.0f} us"
+    )
+    faults = {name: count for name, count in summary.counts.items() if count and name not in ("tick", "overruns")}
+    faults.pop("worst_latency_us", None)
+    if faults:
+        typer.echo("faults: " + ", ".join(f"{name} {count}" for name, count in faults.items()))
+    if record is not None:
+        typer.echo(f"recorded to {record}")
+    if summary.stopped_by_overrun:
+        typer.echo("stopped: a tick came late and the bench says on_overrun: stop", err=True)
+
+

@@ -1,0 +1,43 @@
+"""The clocks: the one file of the runtime that knows the wall clock, and the virtual clock that replaces it."""
+
+import time
+from typing import Protocol
+
+
+class Clock(Protocol):
+    """What the loop asks of time, in integer nanoseconds from an arbitrary origin."""
+
+    def now_ns(self) -> int:
+        """Return the time."""
+
+    def sleep_until_ns(self, deadline_ns: int) -> None:
+        """Return at the deadline or as soon after it as the clock can; at once if it has passed."""
+
+
+class WallClock:
+    """The machine's monotonic clock."""
+
+    def now_ns(self) -> int:
+        """Return the monotonic time."""
+        return time.monotonic_ns()
+
+    def sleep_until_ns(self, deadline_ns: int) -> None:
+        """Sleep; a signal's handler runs within the sleep, which then goes on."""
+        remaining_ns = deadline_ns - time.monotonic_ns()
+        if remaining_ns > 0:
+            time.sleep(remaining_ns * 1e-9)
+
+
+class VirtualClock:
+    """A clock that jumps from deadline to deadline: as fast as possible, and never late unless told to be."""
+
+    def __init__(self) -> None:
+        self.time_ns = 0
+
+    def now_ns(self) -> int:
+        """Return the virtual time."""
+        return self.time_ns
+
+    def sleep_until_ns(self, deadline_ns: int) -> None:
+        """Jump to the deadline."""
+        self.time_ns = max(self.time_ns, deadline_ns)

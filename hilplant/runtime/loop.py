@@ -1,0 +1,195 @@
+"""The 1 kHz loop: frames in, one step of the plant, frames out, one row for the recorder.
+
+Deadlines are absolute: tick k is due at start + k * step. A tick that comes a whole period late gives up the periods it
+missed, counts them, and goes on with the next deadline; the step itself is never stretched.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hilplant.bus.node import Node
+from hilplant.models.plant import tick as plant_tick
+from hilplant.runtime.clock import Clock
+from hilplant.runtime.latency import Latency
+from hilplant.runtime.ring import Ring
+from hilplant.runtime.watchdog import Watchdog
+from hilplant.signals import INPUTS, MODES, OUTPUT_INDEX, OUTPUTS, STATUS, STATUS_INDEX
+from hilplant.units import MICROSECOND_NS, SECOND_NS
+
+WAITING, RUNNING, SAFE, DEGRADED, STOPPED = (float(index) for index in range(len(MODES)))
+
+_FIRST_INPUT = 2
+_FIRST_OUTPUT = _FIRST_INPUT + len(INPUTS)
+_FIRST_STATUS = _FIRST_OUTPUT + len(OUTPUTS)
+
+#: Width of a row in the ring: tick, deadline_ns, inputs, outputs, status.
+ROW_WIDTH = _FIRST_STATUS + len(STATUS)
+
+_TICK, _MODE, _OVERRUNS, _WORST, _RING_LOST = (
+    STATUS_INDEX[name] for name in ("tick", "mode", "overruns", "worst_latency_us", "ring_lost")
+)
+_GUARD = OUTPUT_INDEX["guard"]
+_DEGRADED_FOR_NS = SECOND_NS
+
+
+class PlantRows(Protocol):
+    """What the loop needs of a bench: the plant as flat rows, and what to do when things go wrong."""
+
+    @property
+    def step_ns(self) -> int:
+        """Length of a tick."""
+
+    @property
+    def parameter_row(self) -> NDArray[np.float64]:
+        """Packed parameters."""
+
+    @property
+    def tables(self) -> NDArray[np.float64]:
+        """Tables over the crank angle."""
+
+    @property
+    def state_row(self) -> NDArray[np.float64]:
+        """Packed initial state."""
+
+    @property
+    def input_row(self) -> NDArray[np.float64]:
+        """Inputs until something else is said."""
+
+    @property
+    def safe(self) -> tuple[tuple[int, float], ...]:
+        """Input indices and their values while a command is lost."""
+
+
+@dataclass(slots=True)
+class Progress:
+    """Where the loop stands; read by whoever started it once the loop has ended."""
+
+    ticks: int = 0
+    overruns: int = 0
+    first_tick_ns: int = 0
+    stopped_by_overrun: bool = False
+
+
+class Loop:
+    """One plant on one bus, tick by tick."""
+
+    def __init__(self, plant: PlantRows, node: Node, clock: Clock, ring: Ring | None, on_overrun: str) -> None:
+        self.progress = Progress()
+        self.latency = Latency()
+        self._plant = plant
+        self._node = node
+        self._clock = clock
+        self._ring = ring
+        self._on_overrun = on_overrun
+        self._degraded_until_ns = -1
+        self._line = np.zeros(ROW_WIDTH)
+        self._inputs = self._line[_FIRST_INPUT:_FIRST_OUTPUT]
+        self._outputs = self._line[_FIRST_OUTPUT:_FIRST_STATUS]
+        self._status = self._line[_FIRST_STATUS:]
+        self._state = plant.state_row.copy()
+        self._published: list[float] = [0.0] * (len(OUTPUTS) + len(STATUS))
+        self._bus_ns = 0
+        node.observe = self._observe if ring is not None else None
+
+    def run(self, ticks: int | None, stop: Callable[[], bool], watchdog: Watchdog) -> None:
+        """Tick until `ticks` periods have passed (None: for ever), `stop` says so, or the overrun policy ends it."""
+        step_ns = self._plant.step_ns
+        start_ns = self._clock.now_ns() + step_ns
+        last_ns = start_ns + (ticks - 1) * step_ns if ticks is not None else None
+        feed_ns = watchdog.period_ns
+        next_feed_ns = start_ns + feed_ns
+        deadline_ns = start_ns
+        self.progress.first_tick_ns = start_ns
+        while not stop():
+            self._clock.sleep_until_ns(deadline_ns)
+            late_ns = self._clock.now_ns() - deadline_ns
+            if late_ns >= step_ns:
+                deadline_ns += self._overrun(late_ns // step_ns)
+            if last_ns is not None and deadline_ns >= last_ns:
+                break
+            self.latency.add(late_ns)
+            self.tick(deadline_ns - start_ns)
+            if self.progress.stopped_by_overrun:
+                break
+            if feed_ns and deadline_ns >= next_feed_ns:
+                watchdog.feed()
+                next_feed_ns = deadline_ns + feed_ns
+            deadline_ns += step_ns
+        self._end(deadline_ns - start_ns)
+
+    def tick(self, bus_ns: int) -> None:
+        """Do one tick; `bus_ns` is its deadline counted from the loop's start."""
+        self._bus_ns = bus_ns
+        node = self._node
+        node.receive(bus_ns, shed=bus_ns < self._degraded_until_ns)
+        self._step(safe=node.lost, mode=self._mode(bus_ns))
+        node.send(bus_ns, self._published)
+        self._record()
+
+    def _step(self, safe: bool, mode: float) -> None:
+        self._inputs[:] = self._node.values
+        if safe:
+            for index, value in self._plant.safe:
+                self._inputs[index] = value
+        plant_tick(self._state, self._inputs, self._plant.parameter_row, self._plant.tables, self._outputs)
+        self._published = [*self._outputs.tolist(), *self._status_values(mode)]
+
+    def _record(self) -> None:
+        if self._ring is not None:
+            self._line[0] = self.progress.ticks
+            self._line[1] = self._bus_ns
+            self._status[:] = self._published[len(OUTPUTS) :]
+            self._ring.next_row()[:] = self._line
+            self._ring.commit()
+        self.progress.ticks += 1
+
+    def _end(self, bus_ns: int) -> None:
+        """Do the last tick: relays open, and every message tells that the plant has stopped."""
+        self._bus_ns = bus_ns
+        self._step(safe=True, mode=STOPPED)
+        self._node.send_all(self._published)
+        self._record()
+
+    def warm_up(self) -> None:
+        """Run every compiled and generated function once, on copies, so that the first tick meets none of them cold."""
+        outputs = self._outputs.copy()
+        plant = self._plant
+        plant_tick(self._state.copy(), plant.input_row.copy(), plant.parameter_row, plant.tables, outputs)
+        self._node.rehearse([*outputs.tolist(), *([0.0] * len(STATUS))])
+
+    def counts(self) -> dict[str, int]:
+        """Return the node's counts by cause."""
+        status = self._status_values(STOPPED)
+        return {signal.name: int(status[index]) for index, signal in enumerate(STATUS) if signal.kind == "count"}
+
+    def _mode(self, bus_ns: int) -> float:
+        if self._outputs[_GUARD]:
+            return SAFE
+        if self._node.lost:
+            return WAITING if self._node.waiting else SAFE
+        return DEGRADED if bus_ns < self._degraded_until_ns else RUNNING
+
+    def _status_values(self, mode: float) -> Sequence[float]:
+        counts = self._node.counts
+        counts[_TICK] = self.progress.ticks
+        counts[_MODE] = int(mode)
+        counts[_OVERRUNS] = self.progress.overruns
+        counts[_WORST] = self.latency.worst_ns // MICROSECOND_NS
+        counts[_RING_LOST] = self._ring.lost if self._ring is not None else 0
+        return counts
+
+    def _overrun(self, periods: int) -> int:
+        """Count the periods that were missed and return how far the deadline moves on [ns]."""
+        self.progress.overruns += periods
+        if self._on_overrun == "stop":
+            self.progress.stopped_by_overrun = True
+        elif self._on_overrun == "degrade":
+            self._degraded_until_ns = self._bus_ns + periods * self._plant.step_ns + _DEGRADED_FOR_NS
+        return periods * self._plant.step_ns
+
+    def _observe(self, frame: object, sent: bool) -> None:
+        self._ring.write_frame(self.progress.ticks, self._bus_ns, frame, sent)  # type: ignore[union-attr, arg-type]

@@ -1,0 +1,85 @@
+"""What a process asks of Linux to be woken on time, and what it was given."""
+
+import contextlib
+import ctypes
+import gc
+import os
+import struct
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+_MCL_CURRENT_AND_FUTURE = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Privilege:
+    """One thing that was asked for: its name, whether it was given, and what would give it."""
+
+    name: str
+    granted: bool
+    mend: str = ""
+
+
+def _fifo(priority: int) -> None:
+    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+
+
+def _lock_memory() -> None:
+    library = ctypes.CDLL(None, use_errno=True)
+    if library.mlockall(_MCL_CURRENT_AND_FUTURE) != 0:
+        raise OSError(ctypes.get_errno(), "mlockall")
+
+
+def _attempt(name: str, mend: str, action: Callable[[], object]) -> Privilege:
+    try:
+        action()
+    except (OSError, AttributeError) as error:
+        reason = getattr(error, "strerror", None) or "not on this system"
+        return Privilege(name, False, f"{reason}; {mend}")
+    return Privilege(name, True)
+
+
+@contextlib.contextmanager
+def _shallow_sleep(granted: list[Privilege]) -> Iterator[None]:
+    """Keep the processor out of deep sleep states for as long as the file is open."""
+    with contextlib.ExitStack() as stack:
+
+        def hold() -> None:
+            file = stack.enter_context(open("/dev/cpu_dma_latency", "wb", buffering=0))
+            file.write(struct.pack("i", 0))
+
+        mend = "give the user write access to /dev/cpu_dma_latency"
+        granted.append(_attempt("cpu_dma_latency held at 0", mend, hold))
+        yield
+
+
+@contextlib.contextmanager
+def real_time(priority: int, cpu: int | None) -> Iterator[list[Privilege]]:
+    """Ask for everything that makes wake-ups punctual; yield what was granted and give it back at the end."""
+    granted: list[Privilege] = []
+    cpus = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else set()
+    if cpu is not None:
+        pin = _attempt(f"pinned to CPU {cpu}", f"this process may use {sorted(cpus)}", lambda: _pin({cpu}))
+        granted.append(pin)
+    granted.append(_attempt("memory locked", "raise the memlock limit or grant CAP_IPC_LOCK", _lock_memory))
+    gc.collect()
+    gc.freeze()
+    try:
+        with _shallow_sleep(granted):
+            mend = "raise the rtprio limit or grant CAP_SYS_NICE"
+            granted.append(_attempt(f"SCHED_FIFO priority {priority}", mend, lambda: _fifo(priority)))
+            yield granted
+    finally:
+        _give_back(cpus)
+
+
+def _pin(cpus: set[int]) -> None:
+    os.sched_setaffinity(0, cpus)
+
+
+def _give_back(cpus: set[int]) -> None:
+    gc.unfreeze()
+    with contextlib.suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        os.sched_setaffinity(0, cpus)
+        ctypes.CDLL(None).munlockall()

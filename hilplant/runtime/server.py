@@ -1,0 +1,171 @@
+"""The daemon: opens the bus, starts the recorder, asks for real time, and runs the loop until it is told to end."""
+
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from hilplant.bus.codec import ReceivedMessage, SentMessage
+from hilplant.bus.node import LinkSettings, Node
+from hilplant.bus.transport import Transport, open_transport
+from hilplant.runtime.clock import Clock, WallClock
+from hilplant.runtime.loop import Loop, PlantRows
+from hilplant.runtime.ring import Ring
+from hilplant.runtime.scheduling import Privilege, real_time
+from hilplant.runtime.watchdog import Watchdog
+from hilplant.units import MILLISECOND_NS, SECOND_NS
+
+
+class LoopSettings(Protocol):
+    """What the bench says about the loop."""
+
+    @property
+    def on_overrun(self) -> str:
+        """count, degrade or stop."""
+
+    @property
+    def priority(self) -> int:
+        """SCHED_FIFO priority."""
+
+    @property
+    def cpu(self) -> int | None:
+        """CPU to stay on."""
+
+    @property
+    def frames_per_tick(self) -> int:
+        """Most frames taken from the bus in a tick."""
+
+    @property
+    def queue_frames(self) -> int:
+        """Most frames that wait for a full interface."""
+
+    @property
+    def reopen_ms(self) -> tuple[int, int]:
+        """First and longest pause between attempts to reopen the interface."""
+
+
+class ServedBench(PlantRows, Protocol):
+    """What the server needs of a bench."""
+
+    @property
+    def interface(self) -> dict[str, Any]:
+        """Arguments that open the CAN interface."""
+
+    @property
+    def receive(self) -> tuple[ReceivedMessage, ...]:
+        """Messages that command the plant."""
+
+    @property
+    def send(self) -> tuple[SentMessage, ...]:
+        """Messages that show the plant."""
+
+    @property
+    def loop(self) -> LoopSettings:
+        """Settings of the loop."""
+
+
+@dataclass(slots=True)
+class Summary:
+    """What a run came to."""
+
+    ticks: int = 0
+    overruns: int = 0
+    latency_p50_us: float = 0.0
+    latency_p99_us: float = 0.0
+    latency_p999_us: float = 0.0
+    latency_max_us: float = 0.0
+    stopped_by_overrun: bool = False
+    first_tick_monotonic_ns: int = 0
+    counts: dict[str, int] = field(default_factory=dict)
+    privileges: list[Privilege] = field(default_factory=list)
+
+
+class StopRequest:
+    """Becomes true when somebody wants the run to end."""
+
+    def __init__(self) -> None:
+        self.wanted = False
+
+    def __call__(self, *_: object) -> bool:
+        """Say whether the end was asked for."""
+        return self.wanted
+
+    def ask(self, *_: object) -> None:
+        """Ask for the end; also a signal handler."""
+        self.wanted = True
+
+
+@contextmanager
+def ended_by_signals(stop: StopRequest) -> Iterator[None]:
+    """Let SIGTERM and SIGINT ask for the end instead of breaking a tick in two."""
+    before = {number: signal.signal(number, stop.ask) for number in (signal.SIGTERM, signal.SIGINT)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def link_settings(loop: LoopSettings) -> LinkSettings:
+    """Return how the bench wants its interface treated."""
+    first_ms, longest_ms = loop.reopen_ms
+    return LinkSettings(
+        loop.frames_per_tick, loop.queue_frames, first_ms * MILLISECOND_NS, longest_ms * MILLISECOND_NS
+    )
+
+
+def build_loop(bench: ServedBench, transport: Transport, clock: Clock, ring: Ring | None = None) -> Loop:
+    """Wire a bench, an open interface and a clock into a loop."""
+    values = [float(value) for value in bench.input_row]
+    node = Node(bench.receive, bench.send, transport, link_settings(bench.loop), values)
+    return Loop(bench, node, clock, ring, bench.loop.on_overrun)
+
+
+def serve(
+    bench: ServedBench,
+    seconds: float | None = None,
+    ring: Ring | None = None,
+    stop: StopRequest | None = None,
+    on_start: Callable[[list[Privilege]], None] | None = None,
+) -> Summary:
+    """Run the bench on its interface on the wall clock; returns when the time is up, a signal came or `stop` asks.
+
+    Raises
+    ------
+    TransportError
+        When the interface cannot be opened; nothing has started then.
+
+    """
+    stop = stop or StopRequest()
+    ticks = None if seconds is None else round(seconds * SECOND_NS / bench.step_ns)
+    transport = open_transport(bench.interface)
+    try:
+        loop = build_loop(bench, transport, WallClock(), ring)
+        loop.warm_up()
+        watchdog = Watchdog()
+        with ended_by_signals(stop), real_time(bench.loop.priority, bench.loop.cpu) as privileges:
+            if on_start is not None:
+                on_start(privileges)
+            watchdog.ready()
+            loop.run(ticks, stop, watchdog)
+            watchdog.stopping()
+    finally:
+        transport.close()
+    return _summary(loop, privileges)
+
+
+def _summary(loop: Loop, privileges: list[Privilege]) -> Summary:
+    latency = loop.latency
+    return Summary(
+        ticks=loop.progress.ticks,
+        overruns=loop.progress.overruns,
+        latency_p50_us=latency.quantile_us(0.5),
+        latency_p99_us=latency.quantile_us(0.99),
+        latency_p999_us=latency.quantile_us(0.999),
+        latency_max_us=latency.worst_ns / 1000,
+        stopped_by_overrun=loop.progress.stopped_by_overrun,
+        first_tick_monotonic_ns=loop.progress.first_tick_ns,
+        counts=loop.counts(),
+        privileges=privileges,
+    )

@@ -1,0 +1,291 @@
+"""The daemon on real SocketCAN, with can-utils as the only client: commands by cansend, observation by candump.
+
+Frames are read with cantools from the shipped database, never with hilplant's own codec.
+"""
+
+import math
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import cantools
+import pytest
+
+ROOT = Path(__file__).parents[2]
+DATABASE = cantools.database.load_file(ROOT / "dbc" / "wiper.dbc")
+LINE = re.compile(r"\((\d+\.\d+)\) \S+ ([0-9A-F]{3})#([0-9A-F]*)$")
+SLOW, FAST, OFF = "120#0100", "120#0300", "120#0000"
+PATIENCE_S = 40.0
+HILPLANT = (sys.executable, "-m", "hilplant")
+
+
+class Commander:
+    """Sends one relay command over and over with cansend, as an ECU does, until told another."""
+
+    def __init__(self, cansend: Callable[[str], None]) -> None:
+        self.frame = OFF
+        self._cansend = cansend
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+        self._thread.start()
+
+    def _run(self) -> None:
+        while not self._over.wait(0.15):
+            self._cansend(self.frame)
+
+    def send_now(self) -> None:
+        self._cansend(self.frame)
+
+    def hold(self, frame: str, seconds: float) -> None:
+        self.frame = frame
+        time.sleep(seconds)
+
+    def stop(self) -> None:
+        self._over.set()
+        self._thread.join()
+
+
+@pytest.fixture
+def commander(cansend: Callable[[str], None]) -> Iterator[Commander]:
+    running = Commander(cansend)
+    yield running
+    running.stop()
+
+
+@pytest.fixture
+def server(spawn: Callable[..., Any], vcan: str, tmp_path: Path) -> Any:
+    """The daemon on the default bench, recording; it has sent its first frames."""
+    daemon = spawn(*HILPLANT, "run", "default", "--record", tmp_path / "run.hilrec")
+    daemon.wait_for("serves on", 60)
+    return daemon
+
+
+def observed(candump: Any, name: str) -> list[tuple[float, dict[str, Any]]]:
+    """Return (time, signals) of every frame of one message that candump has seen."""
+    message = DATABASE.get_message_by_name(name)
+    found = []
+    for line in list(candump.lines):
+        match = LINE.match(line)
+        if match and int(match[2], 16) == message.frame_id:
+            found.append((float(match[1]), message.decode(bytes.fromhex(match[3]))))
+    return found
+
+
+def last(candump: Any, name: str) -> dict[str, Any]:
+    return observed(candump, name)[-1][1]
+
+
+def wait_until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
+    deadline = time.monotonic() + seconds
+    while not condition() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    return condition()
+
+
+def test_can_utils_alone_drive_the_wiper_slow_fast_and_park_it(candump: Any, server: Any, commander: Commander) -> None:
+    def crank_speed() -> float:
+        return float(last(candump, "MotorStatus")["CrankSpeed"])
+
+    def park_contact() -> str:
+        return str(last(candump, "ParkSwitch")["ParkContact"])
+
+    candump.wait_for(" 201#")
+    assert park_contact() == "Closed", "it starts parked"
+    commander.frame = SLOW
+    assert wait_until(lambda: 3.9 < crank_speed() < 4.7), "no-load speed of Table 5-9 on the slow brush"
+    assert last(candump, "MotorStatus")["TerminalVoltage"] == 13.5
+    slow = crank_speed()
+    commander.frame = FAST
+    assert wait_until(lambda: 1.2 < crank_speed() / slow < 1.45), "the fast brush's constant is smaller by 1.34"
+    commander.frame = SLOW
+    assert wait_until(lambda: crank_speed() < 1.1 * slow)
+    assert wait_until(lambda: park_contact() == "Open")
+    assert wait_until(lambda: park_contact() == "Closed")
+    commander.frame = OFF
+    commander.send_now()
+    assert wait_until(lambda: crank_speed() == 0.0)
+    angle = last(candump, "Linkage")["CrankAngle"]
+    from_park_deg = (math.degrees(angle) + 180.0) % 360.0 - 180.0
+    print(f"stopped {from_park_deg:.1f} deg from park")
+    assert abs(from_park_deg) < 30.0, "off at the park contact stops near park, as near as this client is quick"
+    assert server.end(patience_s=PATIENCE_S) == 0
+
+
+def test_cantools_on_the_command_line_shows_the_frames_in_plain_units(candump: Any, server: Any, vcan: str) -> None:
+    lines = "\n".join(candump.wait_for(" 200#", count=3))
+    decode = [sys.executable, "-m", "cantools", "decode", str(ROOT / "dbc" / "wiper.dbc")]
+    shown = subprocess.run(decode, input=lines, capture_output=True, text=True, check=True).stdout
+    assert "TerminalVoltage: 0.0 V" in shown.replace("0 V", "0.0 V").replace("0.0.0", "0.0")
+    assert "MotorCurrent" in shown
+
+
+def test_frame_periods_are_those_of_the_database_within_one_percent(candump: Any, server: Any) -> None:
+    candump.wait_for(" 202#", count=600, patience_s=30)
+    rows = []
+    for name in ("MotorStatus", "Linkage", "PlantStatus"):
+        times = [stamp for stamp, _ in observed(candump, name)][1:]
+        cycle_s = DATABASE.get_message_by_name(name).cycle_time / 1000
+        mean = (times[-1] - times[0]) / (len(times) - 1)
+        rows.append((name, cycle_s * 1000, mean * 1000))
+        print(f"{name}: {len(times)} frames, cycle time {cycle_s * 1000:g} ms, mean {mean * 1000:.3f} ms")
+    for name, cycle_ms, mean_ms in rows:
+        assert mean_ms == pytest.approx(cycle_ms, rel=0.01), name
+
+
+def test_a_command_changes_the_status_within_two_ticks(
+    candump: Any, server: Any, commander: Commander, tmp_path: Path
+) -> None:
+    for frame, terminal in ((SLOW, 13.5), (OFF, 0.0), (FAST, 13.5), (OFF, 0.0), (SLOW, 13.5)):
+        commander.frame = frame
+        assert wait_until(lambda wanted=terminal: last(candump, "MotorStatus")["TerminalVoltage"] == wanted)
+    assert server.end(patience_s=PATIENCE_S) == 0
+    delays = delays_in_ticks(tmp_path / "run.hilrec")
+    print(f"ticks from a relay command to its MotorStatus: {delays}")
+    assert len(delays) == 5
+    assert max(delays) <= 2
+
+
+def delays_in_ticks(recording: Path) -> list[int]:
+    """Return, for each change of the relay command, the ticks until a MotorStatus shows the new terminal voltage."""
+    import pyarrow as pa
+
+    voltages = {"0100": 13500, "0300": 13500, "0000": 0}
+    changes: list[tuple[int, str]] = []
+    statuses: list[tuple[int, int]] = []
+    for row in pa.ipc.open_stream(str(recording)).read_all().to_pylist():
+        for frame in row["frames"]:
+            if frame["identifier"] == 0x120 and not frame["sent"]:
+                payload = frame["data"].hex()
+                if payload != (changes[-1][1] if changes else "0000"):
+                    changes.append((int(row["tick"]), payload))
+            if frame["identifier"] == 0x200 and frame["sent"]:
+                statuses.append((int(row["tick"]), int.from_bytes(frame["data"][6:8], "little")))
+    return [
+        next(tick for tick, terminal in statuses if tick >= start and terminal == voltages[payload]) - start
+        for start, payload in changes
+    ]
+
+
+def test_a_client_that_stops_mid_way_leaves_the_wiper_in_the_safe_state(
+    candump: Any, server: Any, commander: Commander
+) -> None:
+    commander.hold(SLOW, 1.5)
+    assert last(candump, "MotorStatus")["CrankSpeed"] > 3.0
+    commander.stop()
+    assert wait_until(lambda: str(last(candump, "PlantStatus")["Mode"]) == "Safe", 3.0)
+    assert wait_until(lambda: last(candump, "MotorStatus")["TerminalVoltage"] == 0.0, 3.0)
+    assert wait_until(lambda: abs(last(candump, "MotorStatus")["CrankSpeed"]) < 1e-3, 3.0)
+    assert wait_until(lambda: last(candump, "LinkFaults")["Timeouts"] == 1, 3.0)
+    assert server.end(patience_s=PATIENCE_S) == 0
+
+
+def test_the_link_goes_down_and_up_ten_times_and_the_loop_ticks_on(
+    candump: Any, server: Any, vcan: str, cansend: Callable[[str], None], tmp_path: Path
+) -> None:
+    candump.wait_for(" 210#", count=2)
+    for _ in range(10):
+        subprocess.run(["ip", "link", "set", vcan, "down"], check=True)
+        time.sleep(0.15)
+        subprocess.run(["ip", "link", "set", vcan, "up"], check=True)
+        time.sleep(0.6)
+    cansend(SLOW)
+    assert server.process.poll() is None
+    assert server.end(patience_s=PATIENCE_S) == 0
+    counts = row_before_end(tmp_path / "run.hilrec", 1)  # the last row is the stop itself, relays open
+    print(f"counted {counts['status.link_down']:.0f} losses of the link in {counts['status.tick']:.0f} ticks")
+    assert counts["status.link_down"] == 10
+    assert counts["out.terminal_v"] == 13.5, "the command after the last recovery was taken"
+
+
+def row_before_end(recording: Path, distance: int) -> dict[str, Any]:
+    import pyarrow as pa
+
+    table = pa.ipc.open_stream(str(recording)).read_all()
+    row: dict[str, Any] = table.slice(len(table) - 1 - distance).to_pylist()[0]
+    return row
+
+
+FLOOD = """
+import random, socket, struct, sys
+bus = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
+bus.setsockopt(socket.SOL_CAN_RAW, socket.CAN_RAW_FD_FRAMES, 1)
+bus.bind(("vcan0",))
+source = random.Random(7)
+ids = (0x120, 0x121, 0x122)
+lengths = {0x120: 2, 0x121: 2, 0x122: 3}
+valid = 0
+for number in range(int(sys.argv[1])):
+    kind = source.random()
+    can_id = source.choice(ids) if kind < 0.5 else source.randrange(0x300, 1 << 11)
+    if kind < 0.1:
+        can_id = source.randrange(1 << 29) | 0x80000000
+    if 0.1 < kind < 0.15:
+        can_id |= 0x40000000
+    if 0.15 < kind < 0.2:
+        can_id = source.randrange(1 << 9) | 0x20000000
+    if 0.2 < kind < 0.3:
+        length = source.choice((0, 1, 2, 3, 8, 12, 48, 64))
+        frame = struct.pack("=IBBBB64s", can_id, length, 0, 0, 0, source.randbytes(64))
+    else:
+        length, data = source.randrange(9), source.randbytes(8)
+        frame = struct.pack("=IB3x8s", can_id, length, data)
+        right = lengths.get(can_id) == length
+        right = right and (can_id != 0x121 or data[0] + 256 * data[1] <= 40_000)
+        valid += right and (can_id != 0x122 or (data[0] & 3 < 2 and data[1] + 256 * data[2] <= 10_000))
+    bus.send(frame)
+print("flooded", number + 1, "valid", valid, flush=True)
+"""
+
+
+def test_a_flood_of_a_million_random_frames_leaves_the_loop_running(
+    candump: Any, server: Any, spawn: Callable[..., Any], tmp_path: Path, cansend: Callable[[str], None]
+) -> None:
+    candump.wait_for(" 210#", count=2)
+    flood = spawn(sys.executable, "-c", FLOOD, "1000000")
+    flood.wait_for("flooded 1000000", 240)
+    wrong = 1_000_000 - int(flood.output.split()[-1])
+    assert server.process.poll() is None, "the daemon lives"
+    assert wait_until(lambda: str(last(candump, "PlantStatus")["Mode"]) == "Safe", 20.0)
+    cansend(SLOW)
+    assert wait_until(lambda: last(candump, "MotorStatus")["TerminalVoltage"] > 0.0, 5.0)
+    assert server.end(patience_s=PATIENCE_S) == 0
+    row = row_before_end(tmp_path / "run.hilrec", 0)
+    causes = ("unknown_frame", "wrong_length", "remote_frame", "fd_frame", "error_frame", "out_of_range")
+    counts = {cause: int(row[f"status.{cause}"]) for cause in causes}
+    missed = int(row["status.missed_frame"])
+    print(f"{counts}, missed {missed}, of {wrong} wrong frames in {row['status.tick']:.0f} ticks")
+    assert all(counts.values())
+    assert sum(counts.values()) <= wrong <= sum(counts.values()) + missed, "each is counted by its cause, or as missed"
+
+
+def test_a_run_with_random_frames_replays_bit_for_bit(
+    server: Any, spawn: Callable[..., Any], vcan: str, tmp_path: Path
+) -> None:
+    subprocess.run(["cangen", vcan, "-I", "120", "-L", "2", "-D", "r", "-n", "300", "-g", "5"], check=True)
+    subprocess.run(["cangen", vcan, "-I", "121", "-L", "2", "-D", "r", "-n", "100", "-g", "5"], check=True)
+    assert server.end(patience_s=PATIENCE_S) == 0
+    words = [*HILPLANT, "replay", str(tmp_path / "run.hilrec")]
+    replay = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert replay.returncode == 0, replay.stdout + replay.stderr
+    assert "bit for bit" in replay.stdout
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_the_daemon_cleanly(candump: Any, server: Any, number: int) -> None:
+    candump.wait_for(" 200#")
+    assert server.end(number, PATIENCE_S) == 0
+    assert str(last(candump, "PlantStatus")["Mode"]) == "Stopped"
+    assert "recorded to" in server.output
+
+
+def test_a_missing_interface_is_one_line_and_nothing_starts(spawn: Callable[..., Any]) -> None:
+    result = subprocess.run([*HILPLANT, "run", "--channel", "can7"], capture_output=True, text=True, check=False)
+    assert result.returncode == 2
+    assert result.stderr.count("\n") == 1
+    assert "can7" in result.stderr
