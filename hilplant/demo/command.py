@@ -1,0 +1,92 @@
+"""What `hilplant demo` does: starts the plant, shows it live, then draws and sums up what was recorded."""
+
+import multiprocessing
+import signal
+from contextlib import closing
+from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnProcess
+from pathlib import Path
+
+from rich.console import Console
+
+from hilplant.demo.plant import Failed, Message, Started, serve_demo
+from hilplant.demo.sequence import Sequence, sequence
+from hilplant.demo.summary import summarise
+from hilplant.display import Scene, watch
+from hilplant.ecu.stalk import stalk_at
+from hilplant.failure import Failure
+from hilplant.runtime.ring import Ring
+from hilplant.runtime.server import Summary
+
+DEFAULT_FOLDER = Path("hilplant-demo")
+RECORDING, PLOT = "demo.hilrec", "demo.png"
+
+
+def run_demo(seconds: float | None, out: Path | None) -> int:
+    """Run the demonstration; leaves recording and plot in `out`, those of an earlier one are replaced."""
+    plan = sequence(seconds)
+    folder = _clear_folder(out or DEFAULT_FOLDER)
+    console = Console()
+    console.print(
+        "hilplant demo: plant and ECU on an in-memory bus; no CAN, no privileges needed\n"
+        "preparing the plant (the first run compiles it, which takes 10 to 20 s) ...",
+        highlight=False,
+    )
+    summary = _serve_and_watch(plan, folder / RECORDING, console)
+    summarise(summary, folder / RECORDING, folder / PLOT, console)
+    return 0
+
+
+def _clear_folder(folder: Path) -> Path:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in (RECORDING, PLOT):
+            (folder / name).unlink(missing_ok=True)
+    except OSError as error:
+        raise Failure(f"{folder}: cannot be written ({error.strerror})") from error
+    return folder
+
+
+def _serve_and_watch(plan: Sequence, path: Path, console: Console) -> Summary:
+    """Run the plant in a process of its own and show it until it ends; Ctrl-C ends it early."""
+    context = multiprocessing.get_context("spawn")
+    here, there = context.Pipe()
+    child = context.Process(target=serve_demo, args=(plan, path, there), name="hilplant demo plant")
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    child.start()
+    there.close()
+    try:
+        return _follow(plan, child, here, console)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+        child.join(10.0)
+        if child.is_alive():
+            child.kill()
+
+
+def _follow(plan: Sequence, child: SpawnProcess, pipe: "Connection[None, Message]", console: Console) -> Summary:
+    try:
+        started = _next_message(pipe)
+        if isinstance(started, Started):
+            with closing(Ring.attach(started.ring)) as ring:
+                watch(ring.latest, pipe.poll, lambda time_s: _scene(plan, time_s), console)
+    except KeyboardInterrupt:
+        child.terminate()
+    ended = _next_message(pipe)
+    while isinstance(ended, Started):
+        ended = _next_message(pipe)
+    if not isinstance(ended, Summary):
+        raise Failure(f"demo: {ended.reason}")
+    return ended
+
+
+def _next_message(pipe: "Connection[None, Message]") -> Message:
+    try:
+        return pipe.recv()
+    except EOFError:
+        return Failed("ended before the plant had started")
+
+
+def _scene(plan: Sequence, time_s: float) -> Scene:
+    progress = f"{time_s:.1f} of {plan.seconds:g} s"
+    return Scene("hilplant demo", progress, stalk_at(plan.turns, time_s).value)

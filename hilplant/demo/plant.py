@@ -1,0 +1,97 @@
+"""The demonstration's own process: the plant's loop, and beside it the ECU as a thread.
+
+An in-memory bus does not reach beyond its process, so the ECU must be in here; it wakes every 5 ms.
+"""
+
+import contextlib
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import NamedTuple
+
+from hilplant.bench import Bench, load_bench
+from hilplant.bus.transport import open_transport
+from hilplant.daemon import recording
+from hilplant.demo.sequence import Sequence
+from hilplant.ecu.node import EcuNode, run_ecu
+from hilplant.ecu.relay_controller import Settings, Stalk
+from hilplant.ecu.stalk import stalk_at
+from hilplant.runtime.clock import WallClock
+from hilplant.runtime.server import StopRequest, Summary, serve
+from hilplant.units import MILLISECOND_NS
+
+BENCH = "virtual"
+_ECU_PAUSE_NS = 5 * MILLISECOND_NS
+
+
+class Started(NamedTuple):
+    """The loop runs; its newest row is in this ring."""
+
+    ring: str
+
+
+class Failed(NamedTuple):
+    """The loop did not start, or ended early, for this reason."""
+
+    reason: str
+
+
+Message = Started | Failed | Summary
+
+
+def serve_demo(plan: Sequence, path: Path, pipe: "Connection[Message, None]") -> None:
+    """Run the demonstration and record it to `path`; say what happens through `pipe`."""
+    # Until the loop runs, and ends on Ctrl-C by itself, the parent decides what Ctrl-C means.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sys.setswitchinterval(0.0005)  # how long the ECU's thread can keep the loop waiting
+    with contextlib.suppress(BrokenPipeError):
+        try:
+            pipe.send(_serve(plan, path, pipe.send))
+        except Exception as error:
+            pipe.send(Failed(str(error) or type(error).__name__))
+
+
+def _serve(plan: Sequence, path: Path, say: Callable[[Message], None]) -> Summary:
+    bench = load_bench(BENCH)
+    ended, stop = threading.Event(), StopRequest()
+    parent = os.getppid()
+
+    def drive() -> None:
+        _drive(node, plan, lambda: ended.is_set() or os.getppid() != parent)
+        stop.ask()  # an orphan has nobody left to show anything to
+
+    node = _ecu_node(bench, plan)
+    ecu = threading.Thread(target=drive, name="ecu", daemon=True)
+    with recording(bench, path) as ring:
+        assert ring is not None
+        name = ring.name
+
+        def on_start(_: object) -> None:
+            # The thread inherits the loop's priority; at a lower one, whoever interrupts it while it holds the
+            # interpreter would hold up the loop.
+            ecu.start()
+            say(Started(name))
+
+        try:
+            return serve(bench, plan.seconds, ring, stop, on_start)
+        finally:
+            ended.set()
+            if ecu.is_alive():
+                ecu.join()
+
+
+def _ecu_node(bench: Bench, plan: Sequence) -> EcuNode:
+    side = bench.ecu_side()
+    return EcuNode(side.receive, side.send, open_transport(bench.interface), Settings(pause_s=plan.pause_s))
+
+
+def _drive(node: EcuNode, plan: Sequence, ended: Callable[[], bool]) -> None:
+    def stalk(elapsed_s: float) -> Stalk:
+        return stalk_at(plan.turns, elapsed_s)
+
+    run_ecu(node, stalk, WallClock(), ended, pause_ns=_ECU_PAUSE_NS)
+    node.close()

@@ -1,0 +1,74 @@
+"""What `hilplant ecu` does: the stand-in ECU on a bench's interface, its stalk written or typed."""
+
+import math
+import os
+import sys
+from collections.abc import Callable
+
+import typer
+
+from hilplant.bench import load_bench
+from hilplant.bus.transport import open_transport
+from hilplant.ecu.node import EcuNode, Report, run_ecu
+from hilplant.ecu.relay_controller import Settings
+from hilplant.ecu.stalk import StalkSource, TypedStalk, parse_stalk, stalk_at
+from hilplant.runtime.clock import WallClock
+from hilplant.runtime.server import StopRequest, ended_by_signals
+from hilplant.units import SECOND_NS
+
+
+def ecu_command(bench_name: str, seconds: float | None, stalk: str | None, channel: str | None = None) -> int:
+    """Be the ECU until the time is up, or SIGTERM or Ctrl-C ends it; the relays are released at the end."""
+    source = _source(stalk)
+    bench = load_bench(bench_name)
+    interface = bench.interface if channel is None else {**bench.interface, "channel": channel}
+    side = bench.ecu_side()
+    transport = open_transport(interface)
+    node = EcuNode(side.receive, side.send, transport, Settings(pause_s=bench.ecu.pause_s))
+    node.report = _teller()
+    stop, clock = StopRequest(), WallClock()
+    end_ns = math.inf if seconds is None else clock.now_ns() + seconds * SECOND_NS
+
+    def ended() -> bool:
+        return stop() or clock.now_ns() >= end_ns
+
+    with ended_by_signals(stop):
+        try:
+            run_ecu(node, source, clock, ended)
+        finally:
+            node.close()
+    return 0
+
+
+def _source(text: str | None) -> StalkSource:
+    """Choose where the stalk's position comes from: the text, else lines on standard input."""
+    if text is not None:
+        turns = parse_stalk(text)
+        return lambda elapsed_s: stalk_at(turns, elapsed_s)
+    descriptor = sys.stdin.fileno()
+    if os.isatty(descriptor):
+        typer.echo("type off, slow, fast or intermittent (a first letter will do); Ctrl-C ends")
+        if os.tcgetpgrp(descriptor) != os.getpgrp():  # in the background, reading would stop this program
+            typer.echo("in the background: the stalk stays off; use --stalk", err=True)
+            return lambda elapsed_s: stalk_at((), elapsed_s)
+    return TypedStalk(descriptor, typer.echo)
+
+
+def _teller() -> Callable[[Report], None]:
+    """Return what prints a line whenever the ECU changes its mind."""
+    last: list[object] = [None]
+
+    def tell(report: Report) -> None:
+        told = (report.stalk, report.state.phase, report.relays, report.park_known)
+        if told != last[0]:
+            last[0] = told
+            typer.echo(_line(report))
+
+    return tell
+
+
+def _line(report: Report) -> str:
+    relays = "OFF" if not report.relays.on else "FAST" if report.relays.fast else "SLOW"
+    silent = "" if report.park_known else "; no word from the park switch"
+    stalk, phase = report.stalk.value, report.state.phase.value
+    return f"{report.time_s:8.3f} s  stalk {stalk}: {phase}, relays {relays}{silent}"
