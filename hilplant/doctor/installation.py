@@ -1,0 +1,55 @@
+"""Examination: compiled code, shared memory and optional parts of this installation."""
+
+import importlib.util
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from hilplant.doctor.finding import Finding
+
+WANTED_SHARED_BYTES = 64 * 2**20
+EXTRAS = {"asammdf": ("mdf", "export to MF4")}
+
+
+def compiled_code(_root: Path) -> Iterator[Finding]:
+    """Ask where compiled models are kept, and whether any are there."""
+    import numba
+
+    import hilplant.jit  # noqa: F401 - decides on the folder
+
+    folder = Path(vars(numba.config)["CACHE_DIR"])
+    if folder.is_relative_to(tempfile.gettempdir()) and "HOME" in os.environ:
+        mend = "export NUMBA_CACHE_DIR=/var/cache/hilplant   # a folder that this user may write"
+        yield Finding("compiled models", "warn", f"{folder} is temporary: every start compiles again", mend)
+    elif any(folder.rglob("*.nbi")):
+        yield Finding("compiled models", "ok", f"kept in {folder}")
+    else:
+        what = f"none in {folder} yet: the next start compiles, 10 to 20 s"
+        yield Finding("compiled models", "warn", what, "hilplant simulate --out first.csv")
+
+
+def shared_memory(root: Path) -> Iterator[Finding]:
+    """Ask for room for the ring that the recorder reads."""
+    folder = root / "dev/shm"
+    if not folder.exists():
+        return
+    free = shutil.disk_usage(folder).free
+    if os.access(folder, os.W_OK) and free >= WANTED_SHARED_BYTES:
+        yield Finding("shared memory", "ok", f"{free // 2**20} MiB free in /dev/shm")
+    else:
+        what = f"{free // 2**20} MiB free in /dev/shm, or not writable: no room for the recorder's ring"
+        yield Finding("shared memory", "bad", what, "sudo mount -o remount,size=256M /dev/shm")
+
+
+def extras(_root: Path) -> Iterator[Finding]:
+    """Look for the optional parts."""
+    for module, (extra, purpose) in EXTRAS.items():
+        if importlib.util.find_spec(module):
+            yield Finding(module, "ok", f"present: {purpose}")
+        else:
+            yield Finding(module, "warn", f"absent: no {purpose}", f"pip install 'hilplant[{extra}]'")
+
+
+CHECKS = (compiled_code, shared_memory, extras)

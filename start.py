@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""Set up and start: makes a Python environment beside this file when there is none, then does what is asked.
+
+python3 start.py demo                 any command of hilplant
+python3 start.py test [ARGUMENT...]   all checks and tests; arguments go to pytest
+"""
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from xml.etree import ElementTree
+
+HERE = Path(__file__).resolve().parent
+VENV = HERE / ".venv"
+STAMP = VENV / "hilplant-installed"
+PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+OLDEST = (3, 11)
+
+
+def main(arguments: list[str]) -> int:
+    """Prepare the environment, then run the tests or a command of hilplant in it."""
+    if sys.version_info < OLDEST:
+        return complain(f"Python {OLDEST[0]}.{OLDEST[1]} or newer is needed, this is {sys.version.split()[0]}")
+    testing = arguments[:1] == ["test"]
+    try:
+        prepare(testing)
+    except SetUpError as error:
+        return complain(str(error))
+    os.environ["PATH"] = f"{PYTHON.parent}{os.pathsep}{os.environ.get('PATH', '')}"
+    os.environ["VIRTUAL_ENV"] = str(VENV)
+    if testing:
+        return run_all_tests(arguments[1:])
+    command = [str(PYTHON), "-m", "hilplant", *arguments]
+    if os.name == "posix":
+        os.execv(command[0], command)  # signals and the exit code are the command's own
+    return subprocess.call(command)
+
+
+class SetUpError(RuntimeError):
+    """The environment cannot be made; the text is one line for the user."""
+
+
+def complain(text: str) -> int:
+    """Say in one line what is wrong."""
+    print(f"start.py: {text}", file=sys.stderr)
+    return 2
+
+
+def prepare(testing: bool) -> None:
+    """Make the environment, or renew it when pyproject.toml, the folder or what is asked of it has changed."""
+    wanted = hashlib.sha256((HERE / "pyproject.toml").read_bytes() + str(HERE).encode()).hexdigest()
+    installed = STAMP.read_text(encoding="utf-8").split() if STAMP.exists() and PYTHON.exists() else []
+    if installed[:1] == [wanted] and (not testing or "test" in installed):
+        return
+    extra = "[test]" if testing or "test" in installed else ""
+    print(f"start.py: installing hilplant{extra} into {VENV} (once, about two minutes) ...", flush=True)
+    if installed[:1] != [wanted]:
+        make_environment()
+    run_quietly([str(PYTHON), "-m", "pip", "install", "-q", "--disable-pip-version-check", "-e", f"{HERE}{extra}"])
+    STAMP.write_text(f"{wanted} {'test' if extra else ''}\n", encoding="utf-8")
+
+
+def make_environment() -> None:
+    """Make .venv anew; Debian keeps what that needs in a package of its own."""
+    try:
+        import ensurepip  # noqa: F401
+    except ImportError:
+        package = f"python{sys.version_info[0]}.{sys.version_info[1]}-venv"
+        if not (os.name == "posix" and os.geteuid() == 0 and shutil.which("apt-get")):
+            raise SetUpError(
+                f"Python's ensurepip is missing; on Debian or Ubuntu: sudo apt install {package}"
+            ) from None
+        os.environ["DEBIAN_FRONTEND"] = "noninteractive"
+        run_quietly(["apt-get", "-q", "update"])
+        run_quietly(["apt-get", "-q", "install", "-y", "--no-install-recommends", package])
+    run_quietly([sys.executable, "-m", "venv", "--clear", str(VENV)])
+
+
+def run_quietly(command: list[str]) -> None:
+    """Run a step of the set-up; show what it said only when it fails."""
+    result = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    if result.returncode:
+        print(result.stdout, file=sys.stderr)
+        raise SetUpError(f"this failed: {' '.join(command)}")
+
+
+def run_all_tests(arguments: list[str]) -> int:
+    """Run linter, type checker, the tests that need no CAN, then those on a real vcan0; say how each went."""
+    pytest = ["-m", "pytest", *arguments]
+    results = {
+        "ruff": step("ruff", ["-m", "ruff", "check", "."]),
+        "mypy": step("mypy", ["-m", "mypy", "hilplant", "start.py"]),
+        "tests": step("tests", [*pytest, "-m", "not vcan"]),
+    }
+    with tempfile.TemporaryDirectory(prefix="hilplant-test-") as folder:
+        report = Path(folder) / "vcan.xml"
+        on_vcan = ["-m", "hilplant.bus.private_vcan", str(PYTHON), *pytest, "-m", "vcan", f"--junitxml={report}"]
+        passed = step("tests on SocketCAN", [*on_vcan, "tests/vcan"])
+        ran, skipped = count(report)
+    results[f"tests on SocketCAN ({ran} run, {skipped} skipped)"] = passed and ran > 0 and skipped == 0
+    print("\n" + "\n".join(f"{'passed' if good else 'FAILED'}  {name}" for name, good in results.items()))
+    return 0 if all(results.values()) else 1
+
+
+def step(name: str, arguments: list[str]) -> bool:
+    """Run one part of the checks in the environment."""
+    print(f"\n=== {name}", flush=True)
+    return subprocess.call([str(PYTHON), *arguments], cwd=HERE, stdin=subprocess.DEVNULL) == 0
+
+
+def count(report: Path) -> tuple[int, int]:
+    """Count the tests in pytest's report: those that ran, those that were skipped."""
+    if not report.exists():
+        return 0, 0
+    suites = list(ElementTree.parse(report).getroot().iter("testsuite"))
+    skipped = sum(int(suite.get("skipped", 0)) for suite in suites)
+    return sum(int(suite.get("tests", 0)) for suite in suites) - skipped, skipped
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,85 @@
+"""Which room may know which: physics knows no bus, the loop knows nothing that is done before it starts."""
+
+from typing import Any
+
+#: Rooms that a room may import from, itself apart. A room that is not named may import from all.
+ARROWS: dict[str, set[str]] = {
+    "units": set(),
+    "failure": set(),
+    "jit": set(),
+    "signals": {"units"},
+    "models": {"units", "signals", "jit", "surrogates"},
+    "surrogates": {"units", "signals", "jit", "models"},
+    "mechanics": {"units", "signals", "failure", "models"},
+    "bus": {"units", "signals", "failure"},
+    "control": {"units", "signals", "failure", "jit", "models"},
+    "runtime": {"units", "signals", "failure", "jit", "models", "surrogates", "control", "bus"},
+    "recording": {"units", "signals", "failure", "jit", "models", "runtime"},
+    "bench": {"units", "signals", "failure", "jit", "resources", "models", "surrogates", "control", "mechanics", "bus"},
+    "doctor": {"jit"},
+}
+#: The stand-in ECU decides without knowing that there is a bus, a bench or a clock.
+PURE_ECU = {"ecu/relay_controller.py", "ecu/stalk.py"}
+#: The only files that open a CAN bus or read and write a CAN log.
+CAN_FILES = {"bus/transport.py", "bus/socketcan.py", "recording/frame_logs.py", "doctor/can_bus.py"}
+#: Of the time module. The loop's clock is one file; the others are start-up, other processes and tools.
+CLOCK_FILES = {
+    "runtime/clock.py": {"monotonic_ns", "sleep"},
+    "recording/drain.py": {"monotonic", "sleep"},
+    "bus/user_mode_linux.py": {"monotonic", "sleep"},
+    "display.py": {"monotonic", "sleep"},
+    "ecu/command.py": {"monotonic"},
+}
+START_TIME_FILES = {"recording/recorder.py"}
+
+
+def test_every_import_follows_an_arrow(sources: list[Any]) -> None:
+    wrong = [
+        f"{source.name} imports from {room}"
+        for source in sources
+        if source.room in ARROWS
+        for room in sorted(source.rooms - ARROWS[source.room])
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_the_deciding_part_of_the_ecu_knows_no_bus_and_no_clock(sources: list[Any]) -> None:
+    for source in sources:
+        if source.name in PURE_ECU:
+            assert source.rooms <= {"units", "signals", "failure"}, source.name
+
+
+def test_only_the_transport_the_frame_logs_and_the_examination_touch_can(sources: list[Any]) -> None:
+    wrong = []
+    for source in sources:
+        uses_library = any(module.split(".")[0] == "can" for module in source.imports)
+        uses_family = "AF_CAN" in source.attributes_of("socket")
+        if (uses_library or uses_family) and source.name not in CAN_FILES:
+            wrong.append(source.name)
+    assert not wrong, f"these open CAN as well: {wrong}"
+
+
+def test_the_clock_is_read_in_named_files_only(sources: list[Any]) -> None:
+    wrong = []
+    for source in sources:
+        if source.room != "benchmarks":
+            excess = source.attributes_of("time") - CLOCK_FILES.get(source.name, set())
+            wrong += [f"{source.name} uses time.{name}" for name in sorted(excess)]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_the_date_is_read_in_named_files_only(sources: list[Any]) -> None:
+    wrong = [
+        source.name
+        for source in sources
+        if source.name not in START_TIME_FILES and {"now", "utcnow", "today"} & source.attributes_of_dates()
+    ]
+    assert not wrong, f"these read the date: {wrong}"
+
+
+def test_compiled_rooms_import_nothing_that_touches_the_world(sources: list[Any]) -> None:
+    allowed = {"math", "typing", "numpy", "collections", "dataclasses", "enum"}
+    for source in sources:
+        if source.room in ("models", "surrogates"):
+            foreign = {module.split(".")[0] for module in source.imports} - allowed - {"hilplant"}
+            assert not foreign, f"{source.name} imports {sorted(foreign)}"

@@ -1,0 +1,70 @@
+"""What keeps the sources readable and the shipped parameter sets sourced."""
+
+import ast
+import re
+from pathlib import Path
+from typing import Any
+
+MOST_LINES = 350
+MOST_FUNCTION_LINES = 60
+BANNED = {"utils", "util", "manager", "handler", "process", "helper", "helpers", "misc", "common"}
+STATUSES = {"measured", "identified", "published", "assumed"}
+#: Folders of config/ whose files are parameter sets.
+PARAMETER_SETS = ("motors", "linkages", "screens")
+#: Folders of config/ whose files say what to do, not what a thing is like.
+DESCRIPTIONS = ("benches", "scenarios")
+
+
+def test_no_file_is_too_long_to_read(sources: list[Any], root: Path) -> None:
+    files = [source.path for source in sources] + sorted((root / "tests").rglob("*.py"))
+    long = {str(path.relative_to(root)) for path in files if len(path.read_text().splitlines()) > MOST_LINES}
+    assert not long, f"more than {MOST_LINES} lines: {sorted(long)}"
+
+
+def test_no_function_is_too_long_to_see_at_once(sources: list[Any]) -> None:
+    long = [
+        f"{source.name}: {node.name}"
+        for source in sources
+        for node in ast.walk(source.tree)
+        if isinstance(node, ast.FunctionDef)
+        and node.end_lineno is not None
+        and node.end_lineno - node.lineno >= MOST_FUNCTION_LINES
+    ]
+    assert not long, f"{MOST_FUNCTION_LINES} lines or more: {long}"
+
+
+def test_no_file_class_or_function_has_a_name_that_says_nothing(sources: list[Any]) -> None:
+    named = [(source.name, source.path.stem) for source in sources]
+    for source in sources:
+        for node in ast.walk(source.tree):
+            if isinstance(node, ast.FunctionDef | ast.ClassDef):
+                named.append((source.name, node.name))
+    wrong = [f"{file}: {name}" for file, name in named if _words(name) & BANNED]
+    assert not wrong, "\n".join(wrong)
+
+
+def _words(name: str) -> set[str]:
+    """Split a name; `in_its_own_process` may say process, `process` or `ProcessManager` may not."""
+    words = re.findall(r"[a-z]+|[A-Z][a-z]*", name)
+    lowered = {word.lower() for word in words}
+    return lowered if len(words) == 1 else lowered - {"process"}
+
+
+def test_every_shipped_parameter_set_has_source_and_status(root: Path) -> None:
+    for folder in PARAMETER_SETS:
+        for path in sorted((root / "config" / folder).glob("*.yaml")):
+            text = path.read_text(encoding="utf-8")
+            assert re.search(r"^source: *\S", text, re.MULTILINE), f"{path.name}: no source"
+            status = re.search(r"^status: *(\w+)", text, re.MULTILINE)
+            assert status and status.group(1) in STATUSES, f"{path.name}: status is one of {sorted(STATUSES)}"
+
+
+def test_every_folder_of_the_configuration_is_known_here(root: Path) -> None:
+    folders = {path.name for path in (root / "config").iterdir() if path.is_dir()}
+    assert folders <= {*PARAMETER_SETS, *DESCRIPTIONS}
+
+
+def test_both_shipped_folders_are_in_the_wheel(root: Path) -> None:
+    project = (root / "pyproject.toml").read_text(encoding="utf-8")
+    for folder in ("config", "dbc"):
+        assert f'"{folder}" = "hilplant/{folder}"' in project
