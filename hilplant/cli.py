@@ -1,6 +1,7 @@
 """The command line: one thin function for each sub-command; what they do lives in the rooms they call."""
 
 import json
+import re
 import sys
 from dataclasses import asdict
 from pathlib import Path
@@ -22,7 +23,9 @@ app = typer.Typer(
 )
 
 BenchName = Annotated[str, typer.Argument(help="a bench file, or the name of a shipped bench", metavar="BENCH")]
-Seconds = Annotated[float | None, typer.Option(min=0.001, help="end after this time; without it, on Ctrl-C or SIGTERM")]
+Seconds = Annotated[
+    float | None, typer.Option(min=0.001, max=1e9, help="end after this time; without it, on Ctrl-C or SIGTERM")
+]
 JsonFile = Annotated[Path | None, typer.Option("--json", help="write the figures to this file")]
 Channel = Annotated[str | None, typer.Option(help="use this channel instead of the bench's, such as can0")]
 
@@ -58,8 +61,9 @@ def run(
     from hilplant.daemon import run_daemon
 
     summary = run_daemon(bench, seconds, record, channel)
-    _write_json(json_file, _flat(asdict(summary)))
-    raise typer.Exit(1 if summary.stopped_by_overrun else 0)
+    missing = " | ".join(f"{given.name}: {given.mend}" for given in summary.privileges if not given.granted)
+    _write_json(json_file, _flat(asdict(summary) | {"privileges": {"missing": missing}}))
+    raise typer.Exit(1 if summary.stopped_by_overrun or not summary.recording_complete else 0)
 
 
 @app.command(epilog='Example: hilplant ecu default --stalk "0:off,1:slow,6:fast,11:off"')
@@ -96,13 +100,20 @@ def check(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
 
 @app.command(epilog="Example: hilplant simulate default slow_fast_park --out wipe.csv")
 def simulate(
-    bench: Annotated[str, typer.Argument(help="a bench file, or the name of a shipped bench")],
-    scenario: Annotated[str, typer.Argument(help="a scenario file, or the name of a shipped scenario")],
+    bench: BenchName,
     out: Annotated[Path, typer.Option(help="file for one row a tick: .csv, .mf4 or .parquet")],
+    scenario: Annotated[
+        str | None, typer.Argument(help="a scenario file, or the name of a shipped scenario", metavar="SCENARIO")
+    ] = None,
 ) -> None:
-    """Run a scenario through the daemon's step, as fast as possible."""
+    """Run a scenario through the daemon's step, as fast as possible.
+
+    With one name alone, it is the scenario's, and the bench is the default one.
+    """
     from hilplant.simulation import simulate_to_file
 
+    if scenario is None:
+        bench, scenario = DEFAULT, bench
     typer.echo(simulate_to_file(bench, scenario, out))
 
 
@@ -161,7 +172,7 @@ def doctor(json_file: JsonFile = None) -> None:
 
     findings = examine()
     print_findings(findings)
-    _write_json(json_file, {"findings": [asdict(finding) for finding in findings]})
+    _write_json(json_file, {re.sub(r"\W+", "_", finding.name).lower(): finding.state for finding in findings})
 
 
 @app.command(
@@ -200,8 +211,8 @@ def _write_json(path: Path | None, figures: dict[str, Any]) -> None:
 
 def main() -> None:
     """Run the command line; what goes wrong is one line on stderr and exit code 2, `--debug` shows its origin."""
-    debug = "--debug" in sys.argv
-    arguments = [argument for argument in sys.argv[1:] if argument != "--debug"]
+    debug = "--debug" in sys.argv and sys.argv[1] != "vcan"  # behind vcan it is the command's own
+    arguments = [argument for argument in sys.argv[1:] if not debug or argument != "--debug"]
     try:
         code = app(arguments, prog_name="hilplant", standalone_mode=False)
     except Exception as error:

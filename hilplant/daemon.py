@@ -8,11 +8,17 @@ from pathlib import Path
 import typer
 
 from hilplant.bench import Bench, load_bench
+from hilplant.bus.interface import TransportError
+from hilplant.failure import Failure
 from hilplant.recording.recorder import start_recorder
 from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.scheduling import Privilege
 from hilplant.runtime.server import Summary, serve
+from hilplant.units import MILLISECOND_NS
+
+#: Counts that the line before the faults has told already.
+_NO_FAULTS = ("tick", "overruns", "worst_latency_us")
 
 
 @contextmanager
@@ -27,8 +33,10 @@ def recording(bench: Bench, path: Path | None) -> Iterator[Ring | None]:
         try:
             yield ring
         finally:
-            ring.close_writer()
             recorder.finish()
+    except TransportError:  # nothing has started: an empty recording would be in the way of the next attempt
+        path.unlink(missing_ok=True)
+        raise
     finally:
         ring.close()
 
@@ -38,8 +46,15 @@ def run_daemon(name: str, seconds: float | None, record: Path | None, channel: s
     bench = load_bench(name)
     if channel is not None:
         bench = replace(bench, interface={**bench.interface, "channel": channel})
-    with recording(bench, record) as ring:
-        summary = serve(bench, seconds, ring, on_start=lambda privileges: _say_start(bench, privileges))
+    summary: Summary | None = None
+    try:
+        with recording(bench, record) as ring:
+            summary = serve(bench, seconds, ring, on_start=lambda privileges: _say_start(bench, privileges))
+    except Failure as failure:
+        if summary is None:
+            raise
+        summary.recording_complete = False  # the run itself is told all the same
+        typer.echo(str(failure), err=True)
     _say_end(summary, record)
     return summary
 
@@ -47,7 +62,8 @@ def run_daemon(name: str, seconds: float | None, record: Path | None, channel: s
 def _say_start(bench: Bench, privileges: list[Privilege]) -> None:
     interface = " ".join(str(value) for value in bench.interface.values())
     missing = [f"  without {p.name}: {p.mend}" for p in privileges if not p.granted]
-    typer.echo(f"{bench.name} serves on {interface}, a tick every {bench.step_ns / 1e6:g} ms; Ctrl-C ends it")
+    step_ms = bench.step_ns / MILLISECOND_NS
+    typer.echo(f"{bench.name} serves on {interface}, a tick every {step_ms:g} ms; Ctrl-C ends it")
     for line in missing:
         typer.echo(line, err=True)
     if missing:
@@ -59,13 +75,10 @@ def _say_end(summary: Summary, record: Path | None) -> None:
         f"{summary.ticks} ticks, {summary.overruns} overruns, late by p50 {summary.latency_p50_us:g} us, "
         f"p99 {summary.latency_p99_us:g} us, at most {summary.latency_max_us:.0f} us"
     )
-    faults = {name: count for name, count in summary.counts.items() if count and name not in ("tick", "overruns")}
-    faults.pop("worst_latency_us", None)
+    faults = {name: count for name, count in summary.counts.items() if count and name not in _NO_FAULTS}
     if faults:
         typer.echo("faults: " + ", ".join(f"{name} {count}" for name, count in faults.items()))
-    if record is not None:
+    if record is not None and summary.recording_complete:
         typer.echo(f"recorded to {record}")
     if summary.stopped_by_overrun:
         typer.echo("stopped: a tick came late and the bench says on_overrun: stop", err=True)
-
-

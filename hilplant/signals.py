@@ -14,7 +14,10 @@ Kind = Literal["real", "flag", "choice", "count"]
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """One signal: its name, unit, permitted range (inclusive), meaning, and value until something else is said."""
+    """One signal: its name, unit, permitted range (inclusive), meaning, and value until something else is said.
+
+    A count never falls; where it outgrows its frame it stays at the highest value, and that is no fault.
+    """
 
     name: str
     unit: str
@@ -73,7 +76,7 @@ STATUS = (
     _count("tick", "steps taken by the plant"),
     Signal("mode", "", 0.0, len(MODES) - 1.0, "what the server is doing", "choice", choices=MODES),
     _count("overruns", "periods lost because a tick came late"),
-    Signal("worst_latency_us", "us", 0.0, 1e12, "longest delay from a deadline to the start of its tick"),
+    Signal("worst_latency_us", "us", 0.0, 1e12, "longest delay from a deadline to the start of its tick", "count"),
     _count("unknown_frame", "frames with an identifier that is not mapped"),
     _count("wrong_length", "mapped frames with another length than the database's"),
     _count("remote_frame", "remote frames"),

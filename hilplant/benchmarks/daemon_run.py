@@ -34,9 +34,9 @@ class DaemonRun:
 
     def missing(self, name: str) -> str | None:
         """Return why the privilege that starts with `name` was not given, None when it was."""
-        for privilege in self.summary["privileges"]:
-            if privilege["name"].startswith(name) and not privilege["granted"]:
-                return str(privilege["mend"])
+        for privilege in str(self.summary["privileges_missing"]).split(" | "):
+            if privilege.startswith(name):
+                return privilege.partition(": ")[2]
         return None
 
 

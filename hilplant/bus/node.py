@@ -11,15 +11,14 @@ from dataclasses import dataclass
 
 from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.frame import Frame
-from hilplant.bus.protection import Checker, Protector, Verdict
+from hilplant.bus.message_state import Incoming, Outgoing
+from hilplant.bus.protection import Verdict
 from hilplant.bus.transport import SendResult, Transport
 from hilplant.signals import STATUS, STATUS_INDEX
-
-#: Causes in the order of ``signals.STATUS``; the node counts those that arise on the bus.
-CAUSES = tuple(signal.name for signal in STATUS)
+from hilplant.units import MILLISECOND_NS
 
 #: How often the interface is asked what it has missed; each time is a system call.
-_CENSUS_EVERY_NS = 100_000_000
+_CENSUS_EVERY_NS = 100 * MILLISECOND_NS
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,51 +27,16 @@ class LinkSettings:
 
     frames_per_tick: int = 100
     queue_frames: int = 64
-    reopen_first_ns: int = 100_000_000
-    reopen_longest_ns: int = 2_000_000_000
-
-
-class _Incoming:
-    """A received message with what the node remembers of it."""
-
-    def __init__(self, message: ReceivedMessage) -> None:
-        self.message = message
-        self.checker = Checker(message.protection) if message.protection else None
-        self.valid_ns: int | None = None
-        self.late = False
-
-    def is_lost(self, now_ns: int) -> bool:
-        return self.valid_ns is None or now_ns - self.valid_ns > self.message.timeout_ns
-
-
-class _Outgoing:
-    """A sent message with when it is due next and what it carried last."""
-
-    def __init__(self, message: SentMessage) -> None:
-        self.message = message
-        self.protector = Protector(message.protection) if message.protection else None
-        self.due_ns = message.offset_ns
-        self.last: tuple[float, ...] | None = None
-
-    def is_due(self, now_ns: int, values: Sequence[float]) -> bool:
-        message = self.message
-        changed = False
-        if message.on_change:
-            watched = tuple([values[index] for index in message.on_change])
-            changed = watched != self.last
-            self.last = watched
-        if message.period_ns and now_ns >= self.due_ns:
-            late = now_ns - self.due_ns
-            self.due_ns += message.period_ns * (1 + late // message.period_ns)
-            return True
-        return changed
+    reopen_first_ns: int = 100 * MILLISECOND_NS
+    reopen_longest_ns: int = 2000 * MILLISECOND_NS
 
 
 class Node:
     """A CAN node that maps frames to signal values and back.
 
     `values` holds the last valid value of each received signal. `lost` is true while any supervised message has
-    not come within its timeout; `waiting` while one of them has not come at all. `counts` follows ``signals.STATUS``.
+    not come within its timeout; `waiting` while one of them has not come at all. `counts` follows ``signals.STATUS``;
+    the node counts the causes that arise on the bus.
     """
 
     def __init__(
@@ -84,14 +48,14 @@ class Node:
         values: list[float],
     ) -> None:
         self.values = values
-        self.counts = [0] * len(CAUSES)
+        self.counts = [0] * len(STATUS)
         self.lost = self.waiting = any(message.timeout_ns for message in received)
         self.observe: Callable[[Frame, bool], None] | None = None
         self._transport = transport
         self._settings = settings
-        self._incoming = {(m.identifier, m.extended): _Incoming(m) for m in received}
+        self._incoming = {(m.identifier, m.extended): Incoming(m) for m in received}
         self._supervised = [i for i in self._incoming.values() if i.message.timeout_ns]
-        self._outgoing = [_Outgoing(message) for message in sent]
+        self._outgoing = [Outgoing(message) for message in sent]
         self._pending: deque[Frame] = deque()
         self._was_up = True
         self._reopen_ns = 0
@@ -162,7 +126,7 @@ class Node:
             self._accept(incoming, decoded, now_ns)
         return cause
 
-    def _accept(self, incoming: _Incoming, decoded: Sequence[float | None], now_ns: int) -> None:
+    def _accept(self, incoming: Incoming, decoded: Sequence[float | None], now_ns: int) -> None:
         if incoming.checker is not None:
             incoming.checker.accept()
         for target, value in zip(incoming.message.targets, decoded):  # noqa: B905 - as in _value_fault
@@ -186,7 +150,7 @@ class Node:
                     incoming.checker.reset()
         self.lost, self.waiting = lost, waiting
 
-    def _build(self, outgoing: _Outgoing, values: Sequence[float]) -> Frame:
+    def _build(self, outgoing: Outgoing, values: Sequence[float]) -> Frame:
         message = outgoing.message
         data, saturated = message.encode(values)
         if saturated:

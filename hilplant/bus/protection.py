@@ -79,12 +79,17 @@ class Protection:
         for name, value in settings.items():
             if name not in known:
                 raise ProtectionError(f"protection has no key '{name}'; it has {', '.join(known)}")
+            if name == "data_id_mode" and not isinstance(value, str):
+                raise ProtectionError(f"{name} must be a word, not {value!r}")
             if name not in ("data_id_list", "data_id_mode") and type(value) is not int:
                 raise ProtectionError(f"{name} must be a whole number, not {value!r}")
         if "profile" not in settings:
             raise ProtectionError(f"profile is missing; it must be one of {', '.join(map(str, PROFILES))}")
         identities = _identities(settings.get("data_id_list", ()))
-        return cls(**{**settings, "data_id_list": identities, "length": length})
+        made = cls(**{**settings, "data_id_list": identities, "length": length})
+        if not identities and "data_id" not in settings:
+            raise ProtectionError("data_id is missing: the number of this message that both ends know")
+        return made
 
     def reserved_places(self) -> frozenset[int]:
         """Return the places (8 * byte + bit) that the header occupies, where no signal may lie."""

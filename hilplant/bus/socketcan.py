@@ -86,7 +86,7 @@ class SocketCan:
     def reopen(self) -> bool:
         """Try once, with a new socket: one whose interface was removed never works again."""
         self.close()
-        with contextlib.suppress(TransportError):
+        with contextlib.suppress(OSError, TransportError):
             self._socket = _connect(self._channel)
             self._up = True
         return self._up
@@ -111,9 +111,23 @@ class SocketCan:
         return Frame(number, data, extended)
 
 
+def wrong_settings(arguments: dict[str, Any]) -> str | None:
+    """Return what is wrong with a bench's arguments, whatever interfaces this machine has; None if nothing is."""
+    if unknown := [name for name in arguments if name not in _SETTINGS]:
+        return (
+            f"socketcan takes {', '.join(_SETTINGS)}, not {', '.join(unknown)}; the bit rate is set with "
+            f"'ip link set {arguments.get('channel', 'can0')} type can bitrate ...'"
+        )
+    channel = arguments.get("channel")
+    if not isinstance(channel, str) or not channel:
+        return f"socketcan needs a channel, such as can0; {_available()}"
+    if not isinstance(arguments.get("fd", False), bool):
+        return "fd must be true or false"
+    return None
+
+
 def open_socketcan(arguments: dict[str, Any]) -> SocketCan:
-    """Open an interface of the kernel from a bench's arguments: `channel`, and `fd` where FD frames must
-    pass.
+    """Open an interface of the kernel from a bench's arguments: `channel`, and `fd` where FD frames must pass.
 
     Raises
     ------
@@ -121,15 +135,13 @@ def open_socketcan(arguments: dict[str, Any]) -> SocketCan:
         With what is there, or the command that mends it.
 
     """
-    if unknown := [name for name in arguments if name not in _SETTINGS]:
-        raise TransportError(
-            f"socketcan takes {', '.join(_SETTINGS)}, not {', '.join(unknown)}; the bit rate is set with "
-            f"'ip link set {arguments.get('channel', 'can0')} type can bitrate ...'"
-        )
-    channel = arguments.get("channel")
-    if not isinstance(channel, str) or not channel:
-        raise TransportError(f"socketcan needs a channel, such as can0; {_available()}")
-    opened = SocketCan(channel)
+    if wrong := wrong_settings(arguments):
+        raise TransportError(wrong)
+    channel = arguments["channel"]
+    try:
+        opened = SocketCan(channel)
+    except OSError as error:
+        raise TransportError(_advice(channel, error)) from error
     if arguments.get("fd") and _mtu(channel) < _FD.size:
         opened.close()
         mend = f"ip link set {channel} down; ip link set {channel} mtu {_FD.size} up"
@@ -146,6 +158,7 @@ def _bytes(frame: Frame) -> bytes:
 
 
 def _connect(channel: str) -> socket.socket:
+    """Open a socket; raises OSError, whose advice is left to the start: looking it up reads files."""
     try:
         opened = socket.socket(socket.AF_CAN, socket.SOCK_RAW | socket.SOCK_NONBLOCK, socket.CAN_RAW)
     except (OSError, AttributeError) as error:
@@ -161,9 +174,9 @@ def _connect(channel: str) -> socket.socket:
         failed = opened.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
         if failed:  # an interface that is down lets itself be bound
             raise OSError(failed, os.strerror(failed))
-    except OSError as error:
+    except OSError:
         opened.close()
-        raise TransportError(_advice(channel, error)) from error
+        raise
     return opened
 
 

@@ -1,4 +1,4 @@
-"""Opens CAN interfaces; the only file that uses python-can.
+"""Opens CAN interfaces; the only file of the bus that uses python-can.
 
 SocketCAN is driven directly, because python-can spends five system calls where one serves; every other
 interface that python-can knows is driven through it, polled, without its threads.
@@ -10,12 +10,22 @@ from typing import Any
 from hilplant.bus.frame import Frame
 from hilplant.bus.interface import SendResult, Transport, TransportError
 from hilplant.bus.lean_import import without_asammdf
-from hilplant.bus.socketcan import open_socketcan
+from hilplant.bus.socketcan import open_socketcan, wrong_settings
 
 with without_asammdf():
     import can
 
-__all__ = ["PythonCan", "SendResult", "Transport", "TransportError", "open_transport"]
+__all__ = ["PythonCan", "SendResult", "Transport", "TransportError", "open_transport", "wrong_interface"]
+
+
+def wrong_interface(arguments: dict[str, Any]) -> str | None:
+    """Return what is wrong with a bench's interface, as far as can be told without opening it; None if nothing is."""
+    interface = arguments["interface"]
+    if interface == "socketcan":
+        return wrong_settings(arguments)
+    if interface not in can.VALID_INTERFACES:
+        return f"python-can has no interface '{interface}'; there are {_known()}"
+    return None
 
 
 def open_transport(arguments: dict[str, Any]) -> Transport:
@@ -98,9 +108,9 @@ class PythonCan:
 
 def _open(arguments: dict[str, Any]) -> can.BusABC:
     """Open a bus by the bench's arguments alone; python-can's own configuration files are left aside."""
+    if wrong := wrong_interface(arguments):
+        raise TransportError(wrong)
     interface = arguments["interface"]
-    if interface not in can.VALID_INTERFACES:
-        raise TransportError(f"python-can has no interface '{interface}'; there are {_known()}")
     try:
         return can.Bus(**arguments, ignore_config=True)
     except Exception as error:  # drivers raise whatever their libraries raise

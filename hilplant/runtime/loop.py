@@ -104,7 +104,7 @@ class Loop:
         next_feed_ns = start_ns + feed_ns
         deadline_ns = start_ns
         self.progress.first_tick_ns = start_ns
-        while not stop():
+        while not (stop() or self.progress.stopped_by_overrun):
             self._clock.sleep_until_ns(deadline_ns)
             late_ns = self._clock.now_ns() - deadline_ns
             if late_ns >= step_ns:
@@ -113,8 +113,6 @@ class Loop:
                 break
             self.latency.add(late_ns)
             self.tick(deadline_ns - start_ns)
-            if self.progress.stopped_by_overrun:
-                break
             if feed_ns and deadline_ns >= next_feed_ns:
                 watchdog.feed()
                 next_feed_ns = deadline_ns + feed_ns

@@ -32,13 +32,14 @@ FRAME_DTYPE = np.dtype(
     ]
 )
 _FRAME = struct.Struct("<qqIBBH64s")
+_FRAME_BYTES = _FRAME.size
 
 _MAGIC = 0x676E6972_6C6968  # "hilring"
 _HEADER_BYTES = 256
 # Places in the header, in 8-byte words. What never changes, what the writer writes and what the reader writes
 # lie on cache lines of their own.
 _MAGIC_AT, _WIDTH, _ROWS, _FRAMES = range(4)
-_ROW_HEAD, _FRAME_HEAD, _LOST, _HEARTBEAT, _CLOSED = range(8, 13)
+_ROW_HEAD, _FRAME_HEAD, _LOST, _CLOSED = range(8, 12)
 _ROW_TAIL, _FRAME_TAIL, _READER = range(16, 19)
 
 
@@ -74,7 +75,7 @@ class Ring:
         OSError
             When the shared memory does not hold it.
         """
-        shared = SharedMemory.create(_HEADER_BYTES + rows * row_width * 8 + frames * FRAME_DTYPE.itemsize)
+        shared = SharedMemory.create(_HEADER_BYTES + rows * row_width * 8 + frames * _FRAME_BYTES)
         np.ndarray((len(shared.bytes),), np.uint8, shared.bytes)[:] = 0  # touch every page now
         words = memoryview(shared.bytes)[:_HEADER_BYTES].cast("q")
         for place, value in ((_WIDTH, row_width), (_ROWS, rows), (_FRAMES, frames), (_MAGIC_AT, _MAGIC)):
@@ -100,11 +101,6 @@ class Ring:
     def lost(self) -> int:
         """Rows and frames that found the ring full."""
         return self._words[_LOST]
-
-    @property
-    def heartbeat_ns(self) -> int:
-        """The last time the writer said that it is alive, on its own clock; 0 before the first."""
-        return self._words[_HEARTBEAT]
 
     @property
     def writer_closed(self) -> bool:
@@ -136,7 +132,7 @@ class Ring:
             return
         identifier, data, extended, fd, bitrate_switch, remote, error = frame
         flags = sent | extended << 1 | fd << 2 | bitrate_switch << 3 | remote << 4 | error << 5
-        at = self._frames_at + head % self._frame_count * 88
+        at = self._frames_at + head % self._frame_count * _FRAME_BYTES
         _FRAME.pack_into(self._memory, at, tick, time_ns, identifier, flags, len(data), 0, data)
         self._frame_head = head + 1
         words[_FRAME_HEAD] = head + 1
@@ -144,10 +140,6 @@ class Ring:
     def _count_lost(self) -> None:
         self._lost += 1
         self._words[_LOST] = self._lost
-
-    def beat(self, now_ns: int) -> None:
-        """Say that the writer is alive."""
-        self._words[_HEARTBEAT] = now_ns
 
     def forget_reader(self) -> None:
         """Overwrite the oldest again instead of waiting for a reader that has died."""

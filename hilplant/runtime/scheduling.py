@@ -7,6 +7,7 @@ import os
 import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 _MCL_CURRENT_AND_FUTURE = 3
 
@@ -57,10 +58,10 @@ def _shallow_sleep(granted: list[Privilege]) -> Iterator[None]:
 def real_time(priority: int, cpu: int | None) -> Iterator[list[Privilege]]:
     """Ask for everything that makes wake-ups punctual; yield what was granted and give it back at the end."""
     granted: list[Privilege] = []
-    cpus = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else set()
+    before = _scheduling()
     if cpu is not None:
-        pin = _attempt(f"pinned to CPU {cpu}", f"this process may use {sorted(cpus)}", lambda: _pin({cpu}))
-        granted.append(pin)
+        mend = f"this process may use {sorted(before.cpus)}" if before is not None else "leave out loop.cpu"
+        granted.append(_attempt(f"pinned to CPU {cpu}", mend, lambda: os.sched_setaffinity(0, {cpu})))
     granted.append(_attempt("memory locked", "raise the memlock limit or grant CAP_IPC_LOCK", _lock_memory))
     gc.collect()
     gc.freeze()
@@ -70,16 +71,31 @@ def real_time(priority: int, cpu: int | None) -> Iterator[list[Privilege]]:
             granted.append(_attempt(f"SCHED_FIFO priority {priority}", mend, lambda: _fifo(priority)))
             yield granted
     finally:
-        _give_back(cpus)
+        gc.unfreeze()
+        if before is not None:
+            _give_back(before)
 
 
-def _pin(cpus: set[int]) -> None:
-    os.sched_setaffinity(0, cpus)
+class _Scheduling(NamedTuple):
+    """How a thread is scheduled, and where it may run."""
+
+    policy: int
+    parameters: "os.sched_param"  # unknown outside Linux
+    cpus: set[int]
 
 
-def _give_back(cpus: set[int]) -> None:
-    gc.unfreeze()
-    with contextlib.suppress(OSError, AttributeError):
-        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
-        os.sched_setaffinity(0, cpus)
+def _scheduling() -> _Scheduling | None:
+    """Return how this thread is scheduled; None on a system that does not tell."""
+    if not hasattr(os, "sched_getaffinity"):
+        return None
+    return _Scheduling(os.sched_getscheduler(0), os.sched_getparam(0), os.sched_getaffinity(0))
+
+
+def _give_back(before: _Scheduling) -> None:
+    """Undo each step, also when another one cannot be undone."""
+    with contextlib.suppress(OSError):
+        os.sched_setscheduler(0, before.policy, before.parameters)
+    with contextlib.suppress(OSError):
+        os.sched_setaffinity(0, before.cpus)
+    with contextlib.suppress(AttributeError):
         ctypes.CDLL(None).munlockall()

@@ -14,7 +14,7 @@ from hilplant.runtime.loop import Loop, PlantRows
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.scheduling import Privilege, real_time
 from hilplant.runtime.watchdog import Watchdog
-from hilplant.units import MILLISECOND_NS, SECOND_NS
+from hilplant.units import MICROSECOND_NS, MILLISECOND_NS, SECOND_NS
 
 
 class LoopSettings(Protocol):
@@ -76,6 +76,7 @@ class Summary:
     latency_p999_us: float = 0.0
     latency_max_us: float = 0.0
     stopped_by_overrun: bool = False
+    recording_complete: bool = True
     first_tick_monotonic_ns: int = 0
     counts: dict[str, int] = field(default_factory=dict)
     privileges: list[Privilege] = field(default_factory=list)
@@ -87,7 +88,7 @@ class StopRequest:
     def __init__(self) -> None:
         self.wanted = False
 
-    def __call__(self, *_: object) -> bool:
+    def __call__(self) -> bool:
         """Say whether the end was asked for."""
         return self.wanted
 
@@ -163,7 +164,7 @@ def _summary(loop: Loop, privileges: list[Privilege]) -> Summary:
         latency_p50_us=latency.quantile_us(0.5),
         latency_p99_us=latency.quantile_us(0.99),
         latency_p999_us=latency.quantile_us(0.999),
-        latency_max_us=latency.worst_ns / 1000,
+        latency_max_us=latency.worst_ns / MICROSECOND_NS,
         stopped_by_overrun=loop.progress.stopped_by_overrun,
         first_tick_monotonic_ns=loop.progress.first_tick_ns,
         counts=loop.counts(),

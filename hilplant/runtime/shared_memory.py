@@ -17,6 +17,14 @@ from pathlib import Path
 _PREFIX = "hilplant-ring-"
 
 
+def _reserve(file: int, size: int) -> None:
+    """Give a file its size, and on Linux its memory too: a full folder is an error now, not a fault later."""
+    if hasattr(os, "posix_fallocate"):
+        os.posix_fallocate(file, 0, size)
+    else:
+        os.ftruncate(file, size)
+
+
 class SharedMemory:
     """A block of bytes, zero at first, known to other processes by its name."""
 
@@ -40,7 +48,7 @@ class SharedMemory:
         path = _folder() / f"{_PREFIX}{os.getpid()}-{secrets.token_hex(4)}"
         file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
         try:
-            os.posix_fallocate(file, 0, size)
+            _reserve(file, size)
         except OSError:
             path.unlink()
             os.close(file)

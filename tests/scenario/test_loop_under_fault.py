@@ -310,6 +310,12 @@ def test_late_ticks_are_counted_and_their_periods_skipped_not_stretched(rig: Rig
     assert loop.latency.worst_ns == 7_300_000
 
 
+def test_a_worst_latency_beyond_what_its_frame_carries_is_no_fault(rig: Rig) -> None:
+    rig.loop.latency.add(70_000_000)
+    rig.tick(201)
+    assert rig.counts() == {"worst_latency_us": 70_000}
+
+
 @pytest.mark.parametrize(("policy", "stops"), [("count", False), ("degrade", False), ("stop", True)])
 def test_the_bench_decides_what_a_late_tick_leads_to(rig: Rig, policy: str, stops: bool) -> None:
     class LateClock(VirtualClock):

@@ -119,17 +119,30 @@ class Candump:
         self._thread.join()
 
 
-@pytest.fixture
-def candump(vcan: str) -> Iterator[Candump]:
-    """Everything that is sent on the interface from here on."""
-    listener = Candump(vcan)
-    # candump does not say when it listens: send marks until one is seen.
+def listening(interface: str, *filters: str, mark: str = "7FF#") -> Candump:
+    """Start candump and return once it listens, which it does not say: marks are sent until one is seen."""
+    listener = Candump(interface, *filters)
     deadline = time.monotonic() + PATIENCE_S
     while not listener.lines and time.monotonic() < deadline:
-        subprocess.run(["cansend", vcan, "7FF#"], check=True)
+        subprocess.run(["cansend", interface, mark], check=True)
         time.sleep(0.02)
     time.sleep(0.1)
     listener.lines.clear()
+    return listener
+
+
+@pytest.fixture
+def candump(vcan: str) -> Iterator[Candump]:
+    """Everything that is sent on the interface from here on."""
+    listener = listening(vcan)
+    yield listener
+    listener.close()
+
+
+@pytest.fixture
+def plant_frames(vcan: str) -> Iterator[Candump]:
+    """What the plant sends from here on, 0x200 to 0x21F, and nothing else."""
+    listener = listening(vcan, "200:7E0", mark="21F#")
     yield listener
     listener.close()
 

@@ -1,0 +1,16 @@
+"""A daemon that cannot start leaves nothing behind."""
+
+from pathlib import Path
+
+import pytest
+
+from hilplant.bus.transport import TransportError
+from hilplant.daemon import run_daemon
+
+
+def test_an_interface_that_cannot_be_opened_leaves_no_recording_in_the_way(tmp_path: Path) -> None:
+    path = tmp_path / "run.hilrec"
+    for _ in range(2):
+        with pytest.raises(TransportError):
+            run_daemon("default", 1.0, path, "nocan9")
+        assert not path.exists()
