@@ -1,7 +1,9 @@
 """The one place that decides how the models are compiled."""
 
+import atexit
 import hashlib
 import os
+import shutil
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -44,7 +46,11 @@ MODELS_HASH = _sources_hash()
 def _cache_folder() -> Path:
     root = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("hilplant"))
     folder = root / f"compiled-{MODELS_HASH}"
-    return folder if _writable(folder) else Path(tempfile.mkdtemp(prefix="hilplant-compiled-"))
+    if _writable(folder):
+        return folder
+    passing = tempfile.mkdtemp(prefix="hilplant-compiled-")
+    atexit.register(shutil.rmtree, passing, ignore_errors=True)
+    return Path(passing)
 
 
 vars(numba.config)["CACHE_DIR"] = str(_cache_folder())

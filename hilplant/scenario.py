@@ -78,17 +78,23 @@ def load_scenario(name: str | Path) -> Scenario:
     if document.problems or not reading.sources:
         reading.raise_problems()
     top = reading.take(document, (), _ScenarioFile)
-    initial = reading.check(document, ("initial",), document.at(("initial",)) or {}, InitialSection)
-    entries = _entries(reading, document) if isinstance(document.at(("signals",)), dict) else {}
+    initial = reading.check(document, ("initial",), _group_at(document, "initial"), InitialSection)
+    entries = _entries(reading, document)
     reading.raise_problems()
     if top is None or initial is None:
         raise AssertionError("a description that failed left no problem behind")
     return Scenario(top.seconds, initial.model_dump(include=initial.model_fields_set), entries)
 
 
+def _group_at(document: Document, key: str) -> dict[str, Any]:
+    """Return a group; nothing where it is left out, or is none and has been told so."""
+    group = document.at((key,))
+    return group if isinstance(group, dict) else {}
+
+
 def _entries(reading: Reading, document: Document) -> dict[int, tuple[Entry, ...]]:
     found: dict[int, tuple[Entry, ...]] = {}
-    for name, items in document.at(("signals",)).items():
+    for name, items in _group_at(document, "signals").items():
         if name not in INPUT_INDEX:
             text = f"the plant has no input '{name}'{suggestion(name, INPUT_INDEX)}"
             reading.note(document, ("signals", name), text)

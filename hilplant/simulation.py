@@ -11,6 +11,7 @@ from hilplant.models.plant import simulate_rows
 from hilplant.recording.tables import check_ending, write_table
 from hilplant.scenario import Scenario, load_scenario
 from hilplant.signals import INPUTS, OUTPUT_INDEX, OUTPUTS
+from hilplant.units import SECOND_NS
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +54,7 @@ def simulate(bench: Bench | str | Path = "default", scenario: Scenario | str | P
     outputs = np.empty((len(inputs), len(OUTPUTS)))
     state = initial_state(bench.parameters, bench.initial | scenario.initial)
     simulate_rows(state, inputs, bench.parameter_row, bench.tables, outputs)
-    return Result(np.arange(len(inputs)) * bench.step_ns / 1e9, inputs, outputs)
+    return Result(np.arange(len(inputs)) * bench.step_ns / SECOND_NS, inputs, outputs)
 
 
 def simulate_to_file(bench: str | Path, scenario: str | Path, out: str | Path) -> str:

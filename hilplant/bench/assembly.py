@@ -157,9 +157,11 @@ def _step_ns(file: Place, step_s: float) -> int:
 
 
 def _section(place: Place, model: type[Description]) -> Description | None:
-    """Check a section that may be left out."""
+    """Check a section that may be left out; one that is no group has been told so."""
     data = place.data()
-    return place.reading.check(place.document, place.location, {} if data is None else data, model)
+    if not isinstance(data, dict | None):
+        return None
+    return place.reading.check(place.document, place.location, data or {}, model)
 
 
 def _is_group(file: Place, key: str) -> bool:

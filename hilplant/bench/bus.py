@@ -12,6 +12,7 @@ from hilplant.bench.timing import sending, timeout_ns
 from hilplant.bench.values import signal_values
 from hilplant.bus.codec import ReceivedMessage, SentMessage, received_message, sent_message
 from hilplant.bus.mapping import MappingError
+from hilplant.bus.transport import wrong_interface
 from hilplant.signals import INPUT_INDEX, INPUTS, PUBLISHED
 
 RELAYS_OPEN = {"relay_on": False, "relay_fast": False}
@@ -59,6 +60,8 @@ def _interface(place: Place) -> dict[str, Any]:
     data = place.data()
     if not isinstance(data, dict) or place.take(InterfaceSection) is None:
         return {}
+    if wrong := wrong_interface(data):
+        place.note(text=wrong)
     return dict(data)
 
 

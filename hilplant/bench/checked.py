@@ -1,6 +1,6 @@
 """The base of all descriptions: strict pydantic models whose errors say what would be right."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ModelWrapValidatorHandler, ValidationError, model_validator
@@ -66,7 +66,7 @@ def _reworded(detail: ErrorDetails, known: set[str]) -> InitErrorDetails:
 
 def _text(detail: ErrorDetails, known: set[str]) -> str:
     kind, value = detail["type"], detail["input"]
-    key = str(detail["loc"][-1]) if detail["loc"] else ""
+    key = _called(detail["loc"])
     if kind == "wrong":
         return detail["msg"]
     if kind == "extra_forbidden":
@@ -75,8 +75,27 @@ def _text(detail: ErrorDetails, known: set[str]) -> str:
         return f"key '{key}' is missing"
     if kind.startswith("union_tag"):
         return _tag_text(detail, key)
+    if kind in ("too_short", "too_long"):
+        return f"{key} {_length_text(detail)}"
     wording = _WORDING.get(kind) or detail["msg"].replace("Input should be", "must be", 1)
     return f"{key} {wording}, not {_shown(value)}".lstrip()
+
+
+def _called(location: Sequence[str | int]) -> str:
+    """Return what a value is called: its key, or its place in a list, counted from 1."""
+    if not location:
+        return ""
+    if isinstance(location[-1], int):
+        return f"entry {location[-1] + 1} of {_called(location[:-1])}"
+    return location[-1]
+
+
+def _length_text(detail: ErrorDetails) -> str:
+    context = detail["ctx"]
+    most = "max_length" in context
+    limit = context["max_length" if most else "min_length"]
+    entries = "entry" if limit == 1 else "entries"
+    return f"must have at {'most' if most else 'least'} {limit} {entries}, not {context['actual_length']}"
 
 
 def _tag_text(detail: ErrorDetails, key: str) -> str:

@@ -116,7 +116,7 @@ class SignalEntry(Checked):
     invert: bool = False
 
     @model_validator(mode="after")
-    def _invertible(self) -> Self:
+    def _scale_not_zero(self) -> Self:
         if self.scale == 0.0:
             raise wrong("scale", text="scale must not be 0")
         return self
@@ -125,7 +125,7 @@ class SignalEntry(Checked):
 class ReceiveEntry(Checked):
     """A message that the plant takes in; without `timeout_ms` it may stay away for ten cycle times."""
 
-    signals: Annotated[dict[str, str | Group], Field(min_length=1)]
+    signals: Annotated[Group, Field(min_length=1)]
     timeout_ms: NotNegative | None = None
     protection: Group | None = None
 
@@ -133,7 +133,7 @@ class ReceiveEntry(Checked):
 class SendEntry(Checked):
     """A message that the plant sends; by default at the database's cycle time; 0: on change only."""
 
-    signals: Annotated[dict[str, str | Group], Field(min_length=1)]
+    signals: Annotated[Group, Field(min_length=1)]
     period_ms: NotNegative | None = None
     offset_ms: NotNegative = 0.0
     on_change: Annotated[list[str], Field(default_factory=list)]

@@ -51,7 +51,7 @@ class Reading:
     def referred_path(self, document: Document, location: Location) -> Path | None:
         """Find the file named at `location`, beside the file that names it or among the shipped ones."""
         name = document.at(location)
-        if not isinstance(name, str):
+        if not isinstance(name, str) or not name:
             return None  # its section has been told so
         beside = Path(document.place(location)[0]).parent
         path = resources.find(name, beside)

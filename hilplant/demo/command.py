@@ -18,14 +18,13 @@ from hilplant.failure import Failure
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.server import Summary
 
-DEFAULT_FOLDER = Path("hilplant-demo")
 RECORDING, PLOT = "demo.hilrec", "demo.png"
 
 
-def run_demo(seconds: float | None, out: Path | None) -> int:
+def run_demo(seconds: float | None, out: Path) -> int:
     """Run the demonstration; leaves recording and plot in `out`, those of an earlier one are replaced."""
     plan = sequence(seconds)
-    folder = _clear_folder(out or DEFAULT_FOLDER)
+    folder = _clear_folder(out)
     console = Console()
     console.print(
         "hilplant demo: plant and ECU on an in-memory bus; no CAN, no privileges needed\n"

@@ -27,7 +27,7 @@ def compiled_code(_root: Path) -> Iterator[Finding]:
         yield Finding("compiled models", "ok", f"kept in {folder}")
     else:
         what = f"none in {folder} yet: the next start compiles, 10 to 20 s"
-        yield Finding("compiled models", "warn", what, "hilplant simulate --out first.csv")
+        yield Finding("compiled models", "warn", what, "hilplant run virtual --seconds 1")
 
 
 def shared_memory(root: Path) -> Iterator[Finding]:

@@ -14,7 +14,7 @@ from hilplant.ecu.relay_controller import Settings
 from hilplant.ecu.stalk import StalkSource, TypedStalk, parse_stalk, stalk_at
 from hilplant.runtime.clock import WallClock
 from hilplant.runtime.server import StopRequest, ended_by_signals
-from hilplant.units import SECOND_NS
+from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 
 def ecu_command(bench_name: str, seconds: float | None, stalk: str | None, channel: str | None = None) -> int:
@@ -34,7 +34,7 @@ def ecu_command(bench_name: str, seconds: float | None, stalk: str | None, chann
 
     with ended_by_signals(stop):
         try:
-            run_ecu(node, source, clock, ended)
+            run_ecu(node, source, clock, ended, pause_ns=round(bench.ecu.period_ms * MILLISECOND_NS))
         finally:
             node.close()
     return 0

@@ -87,12 +87,11 @@ def _step_aside(loop_cpu: int | None) -> None:
     """Leave the signals of the terminal, the loop's priority and the loop's CPU to the daemon."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
-    with contextlib.suppress(OSError):
-        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+    with contextlib.suppress(OSError, AttributeError):  # only Linux has them all
         os.nice(5)
-    others = os.sched_getaffinity(0) - {loop_cpu}
-    if others:
-        os.sched_setaffinity(0, others)
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        if others := os.sched_getaffinity(0) - {loop_cpu}:
+            os.sched_setaffinity(0, others)
 
 
 def main(ring_name: str, path: str, loop_cpu: str) -> int:

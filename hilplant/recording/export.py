@@ -51,6 +51,8 @@ def _write(recording: Recording, out: Path, ending: str) -> str:
     if ending in frame_logs.ENDINGS:
         return f"{frame_logs.write_frame_log(recording, out)} frames"
     columns, units = signal_columns(recording)
+    if ending == ".mf4":  # one clock for signals and frames, also where periods were lost
+        columns = {"deadline_s": columns.pop("deadline_s"), **columns}
     write_table(out, columns, units)
     ticks = f"{len(columns['time_s'])} ticks of {len(columns) - 1} signals"
     return f"{ticks}, {append_frames(recording, out)} frames" if ending == ".mf4" else ticks

@@ -3,6 +3,7 @@
 import base64
 import json
 import platform
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -75,7 +76,7 @@ def current_build() -> dict[str, str]:
 
 def describe(bench: RecordedBench, start_utc: datetime) -> dict[str, str]:
     """Return the metadata of a run of `bench`, as texts by key."""
-    return {
+    texts = {
         "format": FORMAT_VERSION,
         "name": bench.name,
         "step_ns": str(bench.step_ns),
@@ -86,6 +87,7 @@ def describe(bench: RecordedBench, start_utc: datetime) -> dict[str, str]:
         "start_utc": start_utc.astimezone(UTC).isoformat(),
         "build": json.dumps(current_build()),
     }
+    return texts | {"crc32": _checksum(texts)}
 
 
 def parse(metadata: dict[str, str]) -> RunDescription:
@@ -94,8 +96,11 @@ def parse(metadata: dict[str, str]) -> RunDescription:
     Raises
     ------
     KeyError, ValueError
-        When something is missing or unreadable.
+        When something is missing, unreadable or changed.
     """
+    texts = {key: text for key, text in metadata.items() if key != "crc32"}
+    if metadata["crc32"] != _checksum(texts):
+        raise ValueError("it fails its checksum")
     return RunDescription(
         name=metadata["name"],
         step_ns=int(metadata["step_ns"]),
@@ -106,6 +111,11 @@ def parse(metadata: dict[str, str]) -> RunDescription:
         start_utc=datetime.fromisoformat(metadata["start_utc"]),
         build=json.loads(metadata["build"]),
     )
+
+
+def _checksum(texts: dict[str, str]) -> str:
+    """CRC-32 over keys and texts, so that a description which was damaged does not pass for the recorded one."""
+    return f"{zlib.crc32(json.dumps(texts, sort_keys=True).encode()):08x}"
 
 
 def _encode(values: NDArray[np.float64]) -> str:

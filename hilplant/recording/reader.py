@@ -89,7 +89,7 @@ def read_recording(path: str | os.PathLike[str]) -> Recording:
         raise Failure(f"{path}: not a recording of hilplant") from error
     except OSError as error:
         raise Failure(f"{path}: cannot be read: {error.strerror or _first_line(error)}") from error
-    texts = {key.decode(): value.decode() for key, value in (found.metadata or {}).items()}
+    texts = {_text(key): _text(value) for key, value in (found.metadata or {}).items()}
     metadata = {key.removeprefix(KEY_PREFIX): value for key, value in texts.items() if key.startswith(KEY_PREFIX)}
     if "format" not in metadata:
         raise Failure(f"{path}: not a recording of hilplant")
@@ -108,6 +108,10 @@ def matrix(rows: pa.RecordBatch, names: tuple[str, ...]) -> np.ndarray[Any, np.d
     """Return some columns as an array of one row for each tick; nulls become NaN."""
     columns = [rows.column(name).to_numpy(zero_copy_only=False) for name in names]
     return np.ascontiguousarray(np.stack(columns, axis=1), dtype=np.float64)
+
+
+def _text(stored: bytes) -> str:
+    return stored.decode(errors="replace")  # damage is for the checksum to find
 
 
 def _first_line(error: Exception) -> str:

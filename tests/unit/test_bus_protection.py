@@ -165,6 +165,8 @@ def test_the_free_nibble_beside_a_short_counter_stays_free() -> None:
         ({"profile": 2, "data_id_list": [1, 2]}, "profile 2 needs data_id_list, a list of 16"),
         ({"profile": 2, "data_id_list": [300] * 16}, "list of 16 whole numbers from 0 to 255"),
         ({"profile": 1, "data_id_list": [1] * 16}, "data_id_list is for profile 2"),
+        ({"profile": 1, "data_id": 1, "data_id_mode": ["low"]}, "data_id_mode must be a word"),
+        ({"profile": 5}, "data_id is missing"),
     ],
 )
 def test_wrong_settings_are_refused_with_what_would_be_right(settings: dict[str, Any], words: str) -> None:

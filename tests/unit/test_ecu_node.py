@@ -13,6 +13,7 @@ from hilplant.bus.codec import (
 )
 from hilplant.bus.frame import Frame
 from hilplant.bus.transport import SendResult
+from hilplant.ecu import command
 from hilplant.ecu.node import EcuNode, Report, run_ecu
 from hilplant.ecu.relay_controller import Phase, Settings, Stalk
 from hilplant.runtime.clock import VirtualClock
@@ -177,3 +178,12 @@ def test_the_loop_polls_by_its_clock_and_releases_the_relays_when_told_to_stop_o
     with pytest.raises(KeyboardInterrupt):
         run_ecu(seat.node, breaks, VirtualClock(), lambda: False)
     assert seat.wire.sent == [OFF]
+
+
+def test_the_bench_says_how_often_the_ecu_decides(tmp_path, monkeypatch):
+    pauses: list[int] = []
+    monkeypatch.setattr(command, "run_ecu", lambda *_, pause_ns: pauses.append(pause_ns))
+    bench = tmp_path / "bench.yaml"
+    bench.write_text("extends: virtual.yaml\nname: test\necu: {period_ms: 40}\n")
+    assert command.ecu_command(str(bench), 1.0, "0:off") == 0
+    assert pauses == [40 * MILLISECOND_NS]

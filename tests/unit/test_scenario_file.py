@@ -75,6 +75,8 @@ def test_choices_go_by_name_and_the_initial_state_is_kept(tmp_path: Path) -> Non
         ("seconds: 0", "1: seconds must be greater than 0, not 0"),
         ("second: 1\nseconds: 1", "1: unknown key 'second', did you mean 'seconds'?"),
         ("title: x", "1: key 'seconds' is missing"),
+        ("seconds: 1\ninitial: 5", "2: initial must be a group of keys, not 5"),
+        ("seconds: 1\nsignals:\n  supply_v: [[0, 12, 3]]", "3: entry 1 of supply_v must have at most 2 entries, not 3"),
         ("seconds: 1\ninitial: {crank_angle_rad: 7}", "2: crank_angle_rad must be less than"),
         (
             "seconds: 1\nsignals:\n  relay_of: []",

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -70,6 +71,7 @@ class Run:
     seed: int = 1
     next_tick: int = 0
     lose: frozenset[int] = frozenset()
+    late_from: int | None = None  # from this tick on five periods late
 
     def __post_init__(self) -> None:
         self._random = np.random.default_rng(self.seed)
@@ -80,7 +82,9 @@ class Run:
         """Write `ticks` more rows into the ring, and a frame of every kind in turn."""
         for number in range(self.next_tick, self.next_tick + ticks):
             line = self._line
-            line[:2] = number, number * STEP_NS
+            late = self.late_from is not None and number >= self.late_from
+            due_ns = (number + 5 * late) * STEP_NS
+            line[:2] = number, due_ns
             if number % 250 == 0:
                 on, fast = self._random.integers(0, 2, 2)
                 line[2:5] = on, fast, self._random.uniform(9.0, 15.0)
@@ -88,7 +92,7 @@ class Run:
             tick(self._state, inputs, self.bench.parameter_row, self.bench.tables, outputs)
             line[_STATUS_AT] = number
             frame = FRAMES[number % len(FRAMES)]
-            self.ring.write_frame(number, number * STEP_NS, frame, sent=number % 2 == 1)
+            self.ring.write_frame(number, due_ns, frame, sent=number % 2 == 1)
             if number not in self.lose:
                 self.ring.next_row()[:] = line
                 self.ring.commit()
@@ -119,10 +123,10 @@ def frames() -> tuple[Frame, ...]:
 def record_run(tmp_path: Path) -> Callable[..., Path]:
     """Record a run into a file in this process, in blocks of `block` ticks."""
 
-    def record(ticks: int = 1500, block: int = 400, lose: frozenset[int] = frozenset(), seed: int = 1) -> Path:
+    def record(ticks: int = 1500, block: int = 400, **settings: Any) -> Path:
         ring = Ring.create(ROW_WIDTH)
-        run = Run(ring, lose=lose, seed=seed)
-        path = tmp_path / f"run-{seed}.hilrec"
+        run = Run(ring, **settings)
+        path = tmp_path / f"run-{run.seed}.hilrec"
         with path.open("wb") as file:
             writer = RecordingWriter(file, describe(run.bench, START), ring.row_width)
             for begin in range(0, ticks, block):

@@ -79,6 +79,18 @@ def test_mf4_holds_signals_with_units_and_all_frames(record_run: Record, tmp_pat
     assert count == 1500
 
 
+def test_signals_and_frames_of_an_mf4_share_one_clock_where_periods_were_lost(
+    record_run: Record, tmp_path: Path
+) -> None:
+    path, out = record_run(70, late_from=30), tmp_path / "run.mf4"
+    export(path, out)
+    due_s = np.array([tick if tick < 30 else tick + 5 for tick in range(70)]) / 1000
+    with asammdf.MDF(out) as file:
+        assert np.array_equal(file.get("current_a").timestamps, due_s)
+        assert np.array_equal(file.get("time_s").samples, np.arange(70) / 1000)
+        assert np.isin(file.get("CAN_DataFrame").timestamps, due_s).all()
+
+
 def test_python_can_reads_the_data_frames_of_an_mf4_back(record_run: Record, tmp_path: Path) -> None:
     path, out = record_run(70), tmp_path / "run.mf4"
     export(path, out)

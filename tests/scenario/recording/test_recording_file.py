@@ -92,6 +92,19 @@ def test_damage_in_the_middle_is_one_clear_error_and_never_passes_for_data(recor
             assert table.equals(original.slice(0, len(table)))
 
 
+@pytest.mark.parametrize(("key", "bit"), [("tables", 0x01), ("sources", 0x01), ("sources", 0x80), ("start_utc", 0x02)])
+def test_a_damaged_description_of_the_run_is_one_clear_error(record_run: Record, key: str, bit: int) -> None:
+    path = record_run()
+    whole = path.read_bytes()
+    with pa.ipc.open_stream(path) as stream:
+        text = stream.schema.metadata[f"hilplant.{key}".encode()]
+    damaged = bytearray(whole)
+    damaged[whole.index(text) + len(text) // 2] ^= bit
+    path.write_bytes(damaged)
+    with pytest.raises(Failure, match=f"{path}: its description of the run is unreadable"):
+        read_recording(path)
+
+
 @pytest.mark.parametrize("content", [b"", b"time_s,a\n0,1\n", bytes(1000), b"\xff\xff\xff\xff\x10\0\0\0garbage"])
 def test_a_file_that_is_no_recording_is_refused(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "other.hilrec"
