@@ -60,6 +60,7 @@ def run(
     """
     from hilplant.daemon import run_daemon
 
+    _claim(json_file)
     summary = run_daemon(bench, seconds, record, channel)
     missing = " | ".join(f"{given.name}: {given.mend}" for given in summary.privileges if not given.granted)
     _write_json(json_file, _flat(asdict(summary) | {"privileges": {"missing": missing}}))
@@ -159,6 +160,7 @@ def perf(
     """
     from hilplant.benchmarks.perf import measure_and_print
 
+    _claim(json_file)
     _write_json(json_file, measure_and_print(only))
 
 
@@ -200,11 +202,20 @@ def _flat(record: dict[str, Any]) -> dict[str, Any]:
     return flat
 
 
+def _claim(path: Path | None) -> None:
+    """Refuse a file that cannot be written before something long begins."""
+    if path is not None:
+        _write(path, "")
+
+
 def _write_json(path: Path | None, figures: dict[str, Any]) -> None:
-    if path is None:
-        return
+    if path is not None:
+        _write(path, json.dumps(figures, indent=2, default=str) + "\n")
+
+
+def _write(path: Path, text: str) -> None:
     try:
-        path.write_text(json.dumps(figures, indent=2, default=str) + "\n")
+        path.write_text(text, encoding="utf-8")
     except OSError as error:
         raise Failure(f"{path}: cannot be written ({error.strerror})") from error
 

@@ -56,7 +56,8 @@ class Bench:
 
     def ecu_side(self) -> EcuSide:
         """Return the same messages as the stand-in ECU sees them: it sends what the plant receives."""
-        return build_ecu_side(self.commands, self.reports, self.ecu)
+        periods_ns = [message.period_ns for message in self.send]
+        return build_ecu_side(self.commands, self.reports, periods_ns, self.ecu)
 
 
 def load_bench(name: str | Path = "default") -> Bench:

@@ -46,6 +46,8 @@ def assemble_bus(bus: Place, step_ns: int) -> Bus:
     commands = [pair for pair in received if pair is not None]
     reports = [pair for pair in sent if pair is not None]
     _refuse_one_identifier(bus, [message for _, message in commands], [message for _, message in reports])
+    mapped = [mapped for mapped, _ in commands] + [mapped for mapped, _ in reports]
+    _refuse_fd_on_classic(bus, interface, mapped)
     return Bus(
         interface,
         safe,
@@ -117,6 +119,13 @@ def _refuse_two_commanders(receive: Place) -> None:
             if message != place.name:
                 text = f"{target} is already commanded by {message}.{signal}; keep one of the two"
                 place.note("signals", name, text=text)
+
+
+def _refuse_fd_on_classic(bus: Place, interface: dict[str, Any], messages: list[MappedMessage]) -> None:
+    """Refuse FD messages where SocketCAN is not asked for FD frames; other interfaces have their own words for it."""
+    names = [mapped.message.name for mapped in messages if mapped.message.is_fd]
+    if names and interface.get("interface") == "socketcan" and interface.get("fd") is not True:
+        bus.note("interface", text=f"{', '.join(names)}: FD needs 'fd: true' here")
 
 
 def _refuse_one_identifier(bus: Place, receive: list[ReceivedMessage], send: list[SentMessage]) -> None:

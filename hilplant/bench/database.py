@@ -1,6 +1,8 @@
 """The bus database of a bench: its messages by name, and its mistakes where they are."""
 
 import re
+from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +17,17 @@ _LINE = re.compile(r"\bat line (\d+)")
 class Database:
     """Messages by name."""
 
-    def __init__(self, messages: dict[str, Any], file: str) -> None:
+    def __init__(self, messages: Sequence[Any], file: str) -> None:
         """Keep the messages, and the file's name for what is said about it."""
-        self._messages = messages
+        self._messages = {message.name: message for message in messages}
+        self._names = Counter(message.name for message in messages)
         self._file = file
 
     def message(self, place: Place) -> Any | None:
-        """Return the message that a group of the bench is named after; None, noted, when it is unknown."""
+        """Return the message that a group of the bench is named after; None, noted, when there is not one."""
+        if self._names[place.name] > 1:
+            place.note(text=f"{self._file} has {self._names[place.name]} messages '{place.name}'; keep one")
+            return None
         if place.name not in self._messages:
             text = f"{self._file} has no message '{place.name}'{suggestion(place.name, self._messages)}"
             place.note(text=text)
@@ -34,7 +40,7 @@ def read_database(place: Place) -> Database | None:
     if path is None:
         return None
     try:
-        messages = {message.name: message for message in load_database(path).messages}
+        messages = load_database(path).messages
         place.reading.sources[shown(path)] = path.read_text(encoding="utf-8", errors="replace")
     except DatabaseError as error:
         _note(place, path, error)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from hilplant.bench.description import EcuSettings
 from hilplant.bench.mapping import MappedMessage
 from hilplant.bench.timing import CYCLES_UNTIL_LOST
-from hilplant.bus.codec import ReceivedMessage, SentMessage, Timing, received_message, sent_message
+from hilplant.bus.codec import MappingError, ReceivedMessage, SentMessage, Timing, received_message, sent_message
 from hilplant.signals import INPUTS, PUBLISHED
 from hilplant.units import MILLISECOND_NS
 
@@ -20,21 +20,41 @@ class EcuSide:
 
 
 def build_ecu_side(
-    commands: Sequence[MappedMessage], reports: Sequence[MappedMessage], settings: EcuSettings
+    commands: Sequence[MappedMessage],
+    reports: Sequence[MappedMessage],
+    periods_ns: Sequence[int],
+    settings: EcuSettings,
 ) -> EcuSide:
     """Build what the ECU sends from the plant's `commands`, and what it receives from the plant's `reports`.
+
+    `periods_ns` are those of the reports, as the bench has them; after ten of them one counts as lost, 0: never.
+    A command that only works in the plant's direction, such as a multiplexed one, is left out unless it has a relay.
 
     Raises
     ------
     MappingError
-        When a mapping only works in the plant's direction.
+        When the command of a relay only works in the plant's direction.
 
     """
-    return EcuSide(tuple(map(_received, reports)), tuple(_sent(mapped, settings) for mapped in commands))
+    received = tuple(_received(*report) for report in zip(reports, periods_ns, strict=True))
+    sent = [_sent(mapped, settings) for mapped in commands if _commands_relay(mapped) or _can_be_sent(mapped)]
+    return EcuSide(received, tuple(sent))
 
 
-def _received(mapped: MappedMessage) -> ReceivedMessage:
-    timeout_ns = CYCLES_UNTIL_LOST * round((mapped.message.cycle_time or 0) * MILLISECOND_NS)
+def _commands_relay(mapped: MappedMessage) -> bool:
+    return any(mapping.plant_signal in ("relay_on", "relay_fast") for mapping in mapped.mappings)
+
+
+def _can_be_sent(mapped: MappedMessage) -> bool:
+    try:
+        sent_message(mapped.message, mapped.mappings, INPUTS, Timing(0))
+    except MappingError:
+        return False
+    return True
+
+
+def _received(mapped: MappedMessage, period_ns: int) -> ReceivedMessage:
+    timeout_ns = CYCLES_UNTIL_LOST * period_ns
     return received_message(mapped.message, mapped.mappings, PUBLISHED, timeout_ns, mapped.protection)
 
 

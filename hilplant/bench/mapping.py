@@ -61,6 +61,8 @@ def _known(place: Place, message: Any, name: str, plant_name: str, signals: Sequ
     in_plant = [signal.name for signal in signals]
     if name not in in_database:
         place.note("signals", name, text=f"{message.name} has no signal '{name}'{suggestion(name, in_database)}")
+    elif in_database.count(name) > 1:
+        place.note("signals", name, text=f"{message.name} has {in_database.count(name)} signals '{name}'; keep one")
     elif plant_name not in in_plant:
         text = f"the plant has no signal '{plant_name}' here{suggestion(plant_name, in_plant)}"
         place.note("signals", name, text=text)

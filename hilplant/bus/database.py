@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,6 +30,7 @@ def load_database(path: str | Path) -> Database:
         In one line, naming the file.
 
     """
+    logging.getLogger("cantools").setLevel(logging.ERROR)  # it warns of messages that nobody maps
     path = Path(path)
     if path.suffix.lower()[1:] not in _FORMATS:
         raise DatabaseError(f"{path}: a bus database ends in .{', .'.join(_FORMATS)}")

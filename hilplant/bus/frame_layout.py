@@ -55,8 +55,6 @@ def check_overlap(message: Message, signals: Sequence[DatabaseSignal], protectio
         own = set(places(signal))
         if min(own) < 0 or max(own) >= 8 * message.length:
             raise MappingError(message.name, signal.name, f"it does not fit in the frame's {message.length} bytes")
-        if signal.is_float and letter(signal) is None:
-            raise MappingError(message.name, signal.name, f"no float has {signal.length} bits; there are 16, 32, 64")
         for other in seen:
             if not own.isdisjoint(places(other)) and not _on_other_page(message, signal, other):
                 text = f"it shares bits with {other.name}, which is mapped too; map one of them"

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from hilplant.bus.bits import raw_range
+from hilplant.bus.bits import letter, raw_range
 from hilplant.failure import Failure
 
 if TYPE_CHECKING:
@@ -86,6 +86,7 @@ def link(message: Message, mapping: SignalMapping, signals: Sequence[Signal]) ->
         )
     plant = signals[index]
     try:
+        _check_database(database)
         scale, offset = _line(mapping, plant)
         table = _table(database, plant, mapping)
         bounds = _table_bounds(table) if table else _line_bounds(database, scale, offset)
@@ -102,6 +103,14 @@ def _database_signal(message: Message, name: str) -> DatabaseSignal:
             return signal
     known = ", ".join(signal.name for signal in message.signals)
     raise MappingError(message.name, name, f"the message has no such signal; it has {known or 'none'}")
+
+
+def _check_database(database: DatabaseSignal) -> None:
+    """Refuse a signal that the database describes in a way that no value can pass through."""
+    if database.scale == 0:
+        raise ValueError("its factor in the database is 0, so it cannot carry a value")
+    if database.is_float and letter(database) is None:
+        raise ValueError(f"no float has {database.length} bits; there are 16, 32, 64")
 
 
 def _line(mapping: SignalMapping, plant: Signal) -> tuple[float, float]:

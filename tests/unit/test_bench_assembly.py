@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hilplant import load_bench
-from hilplant.bench import Bench
+from hilplant.bench import Bench, check_bench
 from hilplant.resources import named, shipped
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUTS, PUBLISHED, PUBLISHED_INDEX
 
@@ -153,3 +153,39 @@ def test_importing_the_package_loads_neither_compiler_nor_database_reader() -> N
     code = "import sys, hilplant; print([m for m in ('numba', 'numpy', 'cantools', 'pydantic') if m in sys.modules])"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"
+
+
+def test_the_ecu_waits_ten_of_the_periods_at_which_the_bench_sends(tmp_path: Path) -> None:
+    bench = tmp_path / "bench.yaml"
+    section = "ParkSwitch: {period_ms: 500, signals: {ParkContact: park_contact}}"
+    bench.write_text(f"extends: default.yaml\nname: slow\nbus:\n  send:\n    {section}\n")
+    (park,) = load_bench(bench).ecu_side().receive
+    assert park.timeout_ns == 5_000_000_000, "the database's cycle time is 20 ms"
+
+
+def test_the_ecu_leaves_out_a_multiplexed_command_that_has_no_relay(tmp_path: Path) -> None:
+    database = shipped("dbc", "wiper.dbc").read_text()
+    paged = 'SupplyCommand: 3 ECU\n SG_ Page M : 16|8@1+ (1,0) [0|1] "" PLANT'
+    database = database.replace("SupplyCommand: 2 ECU", paged)
+    database = database.replace("SG_ SupplyVoltage :", "SG_ SupplyVoltage m1 :")
+    (tmp_path / "own.dbc").write_text(database)
+    path = tmp_path / "bench.yaml"
+    path.write_text("extends: default.yaml\nname: paged\nbus: {database: own.dbc}\n")
+    bench = load_bench(path)
+    assert [message.name for message in bench.receive] == ["RelayCommand", "SupplyCommand", "Environment"]
+    assert [message.name for message in bench.ecu_side().send] == ["RelayCommand", "Environment"]
+
+
+def test_an_fd_message_needs_an_interface_that_is_asked_for_fd(tmp_path: Path) -> None:
+    database = shipped("dbc", "wiper.dbc").read_text()
+    formats = 'BA_DEF_ BO_ "VFrameFormat" ENUM "StandardCAN","ExtendedCAN","StandardCAN_FD";'
+    database = database.replace('BA_DEF_ "BusType" STRING ;', f'BA_DEF_ "BusType" STRING ;\n{formats}')
+    database = database.replace('BA_ "BusType" "CAN";', 'BA_ "BusType" "CAN FD";\nBA_ "VFrameFormat" BO_ 288 2;')
+    (tmp_path / "own.dbc").write_text(database)
+    path = tmp_path / "bench.yaml"
+    path.write_text("extends: default.yaml\nname: fd\nbus: {database: own.dbc}\n")
+    (problem,) = check_bench(path)
+    assert problem.text == "RelayCommand: FD needs 'fd: true' here"
+    interface = "{interface: socketcan, channel: vcan0, fd: true}"
+    path.write_text(f"extends: default.yaml\nname: fd\nbus: {{database: own.dbc, interface: {interface}}}\n")
+    assert check_bench(path) == []

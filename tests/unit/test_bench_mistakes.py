@@ -199,3 +199,33 @@ def test_a_bench_that_is_not_there_is_one_problem() -> None:
 def test_a_name_that_is_not_shipped_is_answered_with_those_that_are() -> None:
     with pytest.raises(Failure, match=r"^nowhere: no such file, nor one of the shipped benches, which are .*default"):
         load_bench("nowhere")
+
+
+@pytest.mark.parametrize(
+    ("messages", "message"),
+    [
+        (' SG_ S : 0|8@1+ (0,0) [0|1] "" X', "A.S: its factor in the database is 0"),
+        (' SG_ S : 0|24@1- (1,0) [0|0] "" X\nSIG_VALTYPE_ 1 S : 1;', "A.S: no float has 24 bits; there are 16, 32, 64"),
+        (' SG_ S : 0|8@1+ (1,0) [0|0] "" X\n SG_ S : 8|8@1+ (1,0) [0|0] "" X', "A has 2 signals 'S'; keep one"),
+        (' SG_ S : 0|8@1+ (1,0) [0|0] "" X\nBO_ 2 A: 8 X\n SG_ S : 0|8@1+ (1,0) [0|0] "" X', "has 2 messages 'A'"),
+    ],
+)
+def test_a_mapped_signal_that_the_database_describes_badly_is_told(
+    tmp_path: Path, messages: str, message: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "own.dbc").write_text(f'VERSION ""\nNS_ :\nBS_:\nBU_: X\nBO_ 1 A: 8 X\n{messages}\n')
+    receive = "  receive:\n    A: {timeout_ms: 0, signals: {S: supply_v}}\n  send: {}\n"
+    found = the_mistake(tmp_path, f"bus:\n  database: own.dbc\n{receive}")
+    assert found.startswith("bench.yaml:6: ")
+    assert message in found
+    assert capfd.readouterr().err == ""
+
+
+def test_what_is_wrong_with_signals_that_nobody_maps_does_not_matter(tmp_path: Path) -> None:
+    other = ' SG_ S : 8|8@1+ (0,0) [0|1] "" X\n SG_ F : 16|24@1- (1,0) [0|0] "" X\nSIG_VALTYPE_ 1 F : 1;'
+    text = f'VERSION ""\nNS_ :\nBS_:\nBU_: X\nBO_ 1 A: 8 X\n SG_ Good : 0|8@1+ (1,0) [0|40] "" X\n{other}\n'
+    (tmp_path / "own.dbc").write_text(text)
+    section = "A: {timeout_ms: 0, signals: {Good: supply_v}}"
+    assert mistakes(tmp_path, f"bus:\n  database: own.dbc\n  receive: {{{section}}}\n  send: {{}}\n") == []
+    section = "A: {period_ms: 10, signals: {Good: supply_v}}"
+    assert mistakes(tmp_path, f"bus:\n  database: own.dbc\n  receive: {{}}\n  send: {{{section}}}\n") == []
