@@ -28,6 +28,8 @@ def main(arguments: list[str]) -> int:
     testing = arguments[:1] == ["test"]
     try:
         prepare(testing)
+        if testing and not shutil.which("gcc"):
+            install_package("gcc, which compiles what the step is compared with,", "gcc", "libc6-dev")
     except SetUpError as error:
         return complain(str(error))
     os.environ["PATH"] = f"{PYTHON.parent}{os.pathsep}{os.environ.get('PATH', '')}"
@@ -69,15 +71,17 @@ def make_environment() -> None:
     try:
         import ensurepip  # noqa: F401
     except ImportError:
-        package = f"python{sys.version_info[0]}.{sys.version_info[1]}-venv"
-        if not (os.name == "posix" and os.geteuid() == 0 and shutil.which("apt-get")):
-            raise SetUpError(
-                f"Python's ensurepip is missing; on Debian or Ubuntu: sudo apt install {package}"
-            ) from None
-        os.environ["DEBIAN_FRONTEND"] = "noninteractive"
-        run_quietly(["apt-get", "-q", "update"])
-        run_quietly(["apt-get", "-q", "install", "-y", "--no-install-recommends", package])
+        install_package("Python's ensurepip", f"python{sys.version_info[0]}.{sys.version_info[1]}-venv")
     run_quietly([sys.executable, "-m", "venv", "--clear", str(VENV)])
+
+
+def install_package(what: str, *packages: str) -> None:
+    """Install what is missing from Debian's packages, if this is root there; else say which they are."""
+    if not (os.name == "posix" and os.geteuid() == 0 and shutil.which("apt-get")):
+        raise SetUpError(f"{what} is missing; on Debian or Ubuntu: sudo apt install {' '.join(packages)}")
+    os.environ["DEBIAN_FRONTEND"] = "noninteractive"
+    run_quietly(["apt-get", "-q", "update"])
+    run_quietly(["apt-get", "-q", "install", "-y", "--no-install-recommends", *packages])
 
 
 def run_quietly(command: list[str]) -> None:

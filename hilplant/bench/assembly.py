@@ -56,7 +56,7 @@ class Bench:
 
     def ecu_side(self) -> EcuSide:
         """Return the same messages as the stand-in ECU sees them: it sends what the plant receives."""
-        periods_ns = [message.period_ns for message in self.send]
+        periods_ns = {message.name: message.period_ns for message in self.send}
         return build_ecu_side(self.commands, self.reports, periods_ns, self.ecu)
 
 

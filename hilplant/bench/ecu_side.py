@@ -1,6 +1,6 @@
 """The bus as the stand-in ECU sees it: the plant's mapping, read the other way."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from hilplant.bench.description import EcuSettings
@@ -22,12 +22,12 @@ class EcuSide:
 def build_ecu_side(
     commands: Sequence[MappedMessage],
     reports: Sequence[MappedMessage],
-    periods_ns: Sequence[int],
+    periods_ns: Mapping[str, int],
     settings: EcuSettings,
 ) -> EcuSide:
     """Build what the ECU sends from the plant's `commands`, and what it receives from the plant's `reports`.
 
-    `periods_ns` are those of the reports, as the bench has them; after ten of them one counts as lost, 0: never.
+    `periods_ns` are those of the messages that the plant sends, by name; after ten of them one counts as lost.
     A command that only works in the plant's direction, such as a multiplexed one, is left out unless it has a relay.
 
     Raises
@@ -36,7 +36,8 @@ def build_ecu_side(
         When the command of a relay only works in the plant's direction.
 
     """
-    received = tuple(_received(*report) for report in zip(reports, periods_ns, strict=True))
+    heard = [mapped for mapped in reports if mapped.message.name in periods_ns]
+    received = tuple(_received(mapped, periods_ns[mapped.message.name]) for mapped in heard)
     sent = [_sent(mapped, settings) for mapped in commands if _commands_relay(mapped) or _can_be_sent(mapped)]
     return EcuSide(received, tuple(sent))
 
