@@ -27,6 +27,18 @@ PATIENCE_S = 40.0
 HILPLANT = (sys.executable, "-m", "hilplant")
 
 
+#: Off at the edge of the park switch, as an ECU does it: slow until the contact has opened and closed again.
+PARK = """
+cangen "$0" -g 50 -I 120 -L 2 -D 0100 & slow=$!
+stdbuf -oL candump -L "$0,201:7FF" | while read -r line; do
+    case $line in
+        *"#00") opened=1 ;;
+        *"#01") [ -z "$opened" ] || { kill $slow; cansend "$0" 120#0000; break; } ;;
+    esac
+done
+"""
+
+
 class Commander:
     """Sends one relay command over and over with cansend, as an ECU does, until told another."""
 
@@ -90,7 +102,9 @@ def wait_until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
     return condition()
 
 
-def test_can_utils_alone_drive_the_wiper_slow_fast_and_park_it(candump: Any, server: Any, commander: Commander) -> None:
+def test_can_utils_alone_drive_the_wiper_slow_fast_and_park_it(
+    candump: Any, server: Any, commander: Commander, vcan: str
+) -> None:
     def crank_speed() -> float:
         return float(last(candump, "MotorStatus")["CrankSpeed"])
 
@@ -105,17 +119,13 @@ def test_can_utils_alone_drive_the_wiper_slow_fast_and_park_it(candump: Any, ser
     slow = crank_speed()
     commander.frame = FAST
     assert wait_until(lambda: 1.2 < crank_speed() / slow < 1.45), "the fast brush's constant is smaller by 1.34"
-    commander.frame = SLOW
-    assert wait_until(lambda: crank_speed() < 1.1 * slow)
-    assert wait_until(lambda: park_contact() == "Open")
-    assert wait_until(lambda: park_contact() == "Closed")
-    commander.frame = OFF
-    commander.send_now()
+    commander.stop()
+    subprocess.run(["bash", "-c", PARK, vcan], check=True, timeout=60)
     assert wait_until(lambda: crank_speed() == 0.0)
     angle = last(candump, "Linkage")["CrankAngle"]
     from_park_deg = (math.degrees(angle) + 180.0) % 360.0 - 180.0
     print(f"stopped {from_park_deg:.1f} deg from park")
-    assert abs(from_park_deg) < 30.0, "off at the park contact stops near park, as near as this client is quick"
+    assert abs(from_park_deg) < 20.0, "the window begins at -7 deg, braking takes 4; the rest is this client's delay"
     assert server.end(patience_s=PATIENCE_S) == 0
 
 
@@ -158,29 +168,29 @@ def test_a_command_changes_the_status_within_two_ticks(
     assert server.end(patience_s=PATIENCE_S) == 0
     delays = delays_in_ticks(tmp_path / "run.hilrec")
     print(f"ticks from a relay command to its MotorStatus: {delays}")
-    assert len(delays) == 5
+    assert len(delays) >= 5
     assert max(delays) <= 2
 
 
 def delays_in_ticks(recording: Path) -> list[int]:
-    """Return, for each change of the relay command, the ticks until a MotorStatus shows the new terminal voltage."""
+    """Return, for each commanded change of the terminal voltage, the ticks until a MotorStatus shows it."""
     import pyarrow as pa
 
     voltages = {"0100": 13500, "0300": 13500, "0000": 0}
-    changes: list[tuple[int, str]] = []
-    statuses: list[tuple[int, int]] = []
+    shown, wanted = 0, 0
+    since: int | None = None
+    delays: list[int] = []
     for row in pa.ipc.open_stream(str(recording)).read_all().to_pylist():
         for frame in row["frames"]:
             if frame["identifier"] == 0x120 and not frame["sent"]:
-                payload = frame["data"].hex()
-                if payload != (changes[-1][1] if changes else "0000"):
-                    changes.append((int(row["tick"]), payload))
+                wanted = voltages[frame["data"].hex()]
+                since = int(row["tick"]) if since is None and wanted != shown else since
             if frame["identifier"] == 0x200 and frame["sent"]:
-                statuses.append((int(row["tick"]), int.from_bytes(frame["data"][6:8], "little")))
-    return [
-        next(tick for tick, terminal in statuses if tick >= start and terminal == voltages[payload]) - start
-        for start, payload in changes
-    ]
+                shown = int.from_bytes(frame["data"][6:8], "little")
+                if since is not None and shown == wanted:
+                    delays.append(int(row["tick"]) - since)
+                    since = None
+    return delays
 
 
 def test_a_client_that_stops_mid_way_leaves_the_wiper_in_the_safe_state(
