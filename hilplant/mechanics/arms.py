@@ -1,21 +1,10 @@
-"""Wiper arms: rigid bodies in a row on their rocker, section 4.2.2."""
+"""Wiper arms: their design points, and what the step needs of them, section 4.2.2."""
 
 import math
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
 
 from hilplant.mechanics.design_points import plane_points, refuse_coincident
-from hilplant.mechanics.planar import (
-    Body,
-    Driving,
-    Ground,
-    Joint,
-    Mechanism,
-    Point,
-    Revolute,
-    Rigid,
-    direction,
-)
+from hilplant.mechanics.planar import Point, direction
 from hilplant.models.records import Arm
 
 #: Design points of each kind of arm; the first is the pivot, the last carries the blade.
@@ -58,18 +47,3 @@ def arm(points: Sequence[Point], rocker_angle_at_design_rad: float) -> Arm:
     """
     offset = direction(points[0], points[1]) - float(rocker_angle_at_design_rad)
     return Arm(offset, math.dist(points[0], points[-1]))
-
-
-def arm_mechanism(points: Sequence[Point]) -> Mechanism:
-    """Return the arm's bodies, rigidly joined, the first one driven about the pivot, (4.35), (4.38)."""
-    pairs = pairwise(points)
-    bodies = [Body.between(f"body {index}", *ends) for index, ends in enumerate(pairs, start=1)]
-    joints: list[Joint] = [
-        Ground("ground"),
-        Revolute(("ground", points[0]), bodies[0].first_end),
-        Driving(bodies[0].name),
-    ]
-    for inner, outer in pairwise(bodies):
-        bend = outer.angle_rad - inner.angle_rad
-        joints.append(Rigid(inner.second_end, outer.first_end, bend))
-    return Mechanism([Body.ground(), *bodies], joints)

@@ -139,9 +139,18 @@ class Mechanism:
     def jacobian(self, coordinates: Floats) -> Floats:
         """Return the derivative of C by the coordinates, (4.12), (4.13), shape [..., n, n]."""
         angles = coordinates[..., np.newaxis, 2::3]
-        result = np.broadcast_to(self.linear, (*coordinates.shape, self.design.size)).copy()
+        result = np.broadcast_to(self.linear, (*coordinates.shape, self.design.size)).astype(coordinates.dtype)
         result[..., 2::3] += self.sine * np.cos(angles) - self.cosine * np.sin(angles)
         return result
+
+    def turning(self, coordinates: Floats, velocities: Floats) -> Floats:
+        """Return Q_d of (4.20), (4.23), what the bodies' turning adds to (4.19); shape of `coordinates`.
+
+        The drive angle enters linearly and time not at all, so of (4.20) only its first term is left, and of
+        that only the squares of the angular velocities.
+        """
+        angles, squares = coordinates[..., 2::3], velocities[..., 2::3] ** 2
+        return np.asarray((np.cos(angles) * squares) @ self.cosine.T + (np.sin(angles) * squares) @ self.sine.T)
 
     def point(self, coordinates: Floats, pin: Pin) -> Floats:
         """Return where a point of a body is, (4.4), [m], shape [..., 2]."""

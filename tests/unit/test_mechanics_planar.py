@@ -36,8 +36,7 @@ def parallelogram() -> Mechanism:
 def test_jacobian_agrees_with_differences_of_the_constraints(parallelogram: Mechanism) -> None:
     q, drive, step = np.random.default_rng(1).normal(size=12), np.array(0.2), 1e-6
     columns = [
-        (parallelogram.constraints(q + side, drive) - parallelogram.constraints(q - side, drive))
-        / (2.0 * step)
+        (parallelogram.constraints(q + side, drive) - parallelogram.constraints(q - side, drive)) / (2.0 * step)
         for side in step * np.eye(12)
     ]
     error = np.abs(parallelogram.jacobian(q) - np.array(columns).T).max()
@@ -55,8 +54,7 @@ def test_jacobian_of_rigid_joints_agrees_with_differences_too() -> None:
     mechanism = Mechanism((Body.ground(), inner, outer), (Ground("ground"), pinned, driven, rigid))
     q, step = np.random.default_rng(2).normal(size=9), 1e-6
     columns = [
-        (mechanism.constraints(q + side, np.array(0.0)) - mechanism.constraints(q - side, np.array(0.0)))
-        / (2 * step)
+        (mechanism.constraints(q + side, np.array(0.0)) - mechanism.constraints(q - side, np.array(0.0))) / (2 * step)
         for side in step * np.eye(9)
     ]
     assert np.abs(mechanism.jacobian(q) - np.array(columns).T).max() < 1e-9
@@ -81,24 +79,19 @@ def test_rocker_of_a_parallelogram_turns_with_its_crank(parallelogram: Mechanism
 
 def test_a_position_out_of_reach_is_refused_with_numbers() -> None:
     short = four_bar((0.0, 1.0), (2.0, 1.0), (2.5, 0.0))
-    with pytest.raises(
-        SolutionError, match=r"^Newton-Raphson has not converged at drive angle 180\.000 deg: .*1e-12$"
-    ):
+    with pytest.raises(SolutionError, match=r"^Newton-Raphson has not converged at drive angle 180\.000 deg: .*1e-12$"):
         positions(short, short.design, np.array(math.pi))
 
 
-def test_falling_through_a_dead_point_is_refused(parallelogram: Mechanism) -> None:
-    with pytest.raises(
-        SolutionError, match=r"^a joint falls through its dead point at drive angle 180\.448 deg$"
-    ):
+def test_coming_to_a_dead_point_is_refused(parallelogram: Mechanism) -> None:
+    """Where the links lie in one line the rocker may go on either way; the solver must not choose."""
+    with pytest.raises(SolutionError, match=r"^a joint comes to its dead point at drive angle 1(80\.0|79\.9)\d\d deg$"):
         follow(parallelogram, math.pi / 2.0 + np.linspace(0.0, 2.0 * math.pi, 403))
 
 
 def test_coordinates_left_free_are_refused_at_assembly() -> None:
     with pytest.raises(ValueError, match="4 constraint equations cannot settle 6 coordinates"):
-        Mechanism(
-            (Body.ground(), Body.between("bar", (0.0, 0.0), (1.0, 0.0))), (Ground("ground"), Driving("bar"))
-        )
+        Mechanism((Body.ground(), Body.between("bar", (0.0, 0.0), (1.0, 0.0))), (Ground("ground"), Driving("bar")))
 
 
 def test_a_point_in_a_body_s_own_coordinates_is_found_again_in_the_plane() -> None:

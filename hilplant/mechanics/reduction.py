@@ -1,0 +1,121 @@
+"""The whole wiper seen from the crank: inertia, gravity, drag, and how far each blade point moves.
+
+With one degree of freedom, virtual power at the crank replaces all joint forces. The torque at the crank is
+tau = M a + M' w^2 / 2 + G + V^2 D + sum of |J_i| F_i over the blades' points, with
+M = sum of m (x'^2 + y'^2) + I phi'^2, M' = 2 sum of m (x' x'' + y' y'') + I phi' phi'', G = sum of m g y'. A dash is a
+derivative by the crank angle.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hilplant.mechanics.coefficients import coefficient_over
+from hilplant.mechanics.motion import Motion, forward_sense
+from hilplant.mechanics.planar import Floats, Pin
+from hilplant.mechanics.wiper import Side, Wiper
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A quantity over the crank angle, [m], and its derivative by the crank angle."""
+
+    value: Floats
+    slope: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class SideCurves:
+    """What one blade adds.
+
+    Attributes
+    ----------
+    rocker
+        The rocker's angle [rad].
+    drag
+        Torque of the drag at the crank by the square of the air's speed [N m s2/m2], positive against positive crank
+        speed.
+    lift
+        Lift by the square of the air's speed [N s2/m2], positive away from the screen.
+    points
+        dr/d theta of each friction point [m/rad], with the sign of the rocker's rate.
+
+    """
+
+    rocker: Curve
+    drag: Curve
+    lift: Curve
+    points: tuple[Curve, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Reduction:
+    """The wiper at the crank: inertia M [kg m2], gravity torque G [N m], positive against positive speed, blades."""
+
+    inertia: Curve
+    gravity: Curve
+    left: SideCurves
+    right: SideCurves
+
+    def moving_torque(self, speed_rad_s: Floats | float, acceleration_rad_s2: Floats | float) -> Floats:
+        """Return M a + M' w^2 / 2 + G [N m], the torque that moves the wiper without wind and friction."""
+        inertial = self.inertia.value * acceleration_rad_s2 + self.inertia.slope * (np.square(speed_rad_s) / 2.0)
+        return np.asarray(inertial + self.gravity.value)
+
+
+def reduce(wiper: Wiper, moving: Motion) -> Reduction:
+    """Return the wiper as seen from the crank.
+
+    Raises
+    ------
+    CoefficientError
+        When a table of drag or lift does not reach over the arm's sweep.
+
+    """
+    left, right = (_side(wiper, moving, side) for side in wiper.sides)
+    return Reduction(_inertia(wiper, moving), _gravity(wiper, moving), left, right)
+
+
+def _inertia(wiper: Wiper, moving: Motion) -> Curve:
+    weights = np.stack([wiper.masses_kg, wiper.masses_kg, wiper.inertias_kg_m2], axis=-1).ravel()
+    return Curve(moving.rates**2 @ weights, 2.0 * (moving.rates * moving.accelerations) @ weights)
+
+
+def _gravity(wiper: Wiper, moving: Motion) -> Curve:
+    weights = wiper.masses_kg * wiper.gravity_m_s2
+    return Curve(moving.rates[:, 1::3] @ weights, moving.accelerations[:, 1::3] @ weights)
+
+
+def _side(wiper: Wiper, moving: Motion, side: Side) -> SideCurves:
+    angle = wiper.mechanism.angle(side.rocker)
+    rocker = Curve(moving.coordinates[:, angle], moving.rates[:, angle])
+    change = moving.accelerations[:, angle]
+    points = tuple(
+        Curve(rocker.slope * radius, change * radius) for radius in (_radius(wiper, side, pin) for pin in side.friction)
+    )
+    return SideCurves(rocker, _drag(wiper, moving, side), _lift(wiper, side, rocker), points)
+
+
+def _radius(wiper: Wiper, side: Side, pin: Pin) -> float:
+    """Return how far a point of the blade is from the arm's pivot [m]; arm and blade turn about it as one body."""
+    design = wiper.mechanism.design
+    return float(np.linalg.norm(wiper.mechanism.point(design, pin) - wiper.mechanism.point(design, side.pivot)))
+
+
+def _lift(wiper: Wiper, side: Side, rocker: Curve) -> Curve:
+    """Return (4.52) at an air speed of 1 m/s."""
+    arm_rad = rocker.value + side.arm.offset_rad
+    value, by_angle = coefficient_over(f"{side.name} blade: lift", side.air.lift, arm_rad)
+    pressed = 0.5 * wiper.air_density_kg_m3 * side.air.area_m2
+    return Curve(pressed * value, pressed * by_angle * rocker.slope)
+
+
+def _drag(wiper: Wiper, moving: Motion, side: Side) -> Curve:
+    """Return (4.51) at an air speed of 1 m/s, acting on the blade's joint along its path in the forward wipe."""
+    angle = wiper.mechanism.angle(side.rocker)
+    rate, change = moving.rates[:, angle], moving.accelerations[:, angle]
+    arm_rad = moving.coordinates[:, angle] + side.arm.offset_rad
+    value, by_angle = coefficient_over(f"{side.name} blade: drag", side.air.drag, arm_rad)
+    pressed = 0.5 * wiper.air_density_kg_m3 * side.air.area_m2
+    against = -forward_sense(wiper, side) * _radius(wiper, side, side.centre) * pressed
+    return Curve(against * value * rate, against * (by_angle * rate**2 + value * change))

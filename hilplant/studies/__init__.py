@@ -1,0 +1,1 @@
+"""Offline studies: what published measurements say, and fits to them. Nothing here runs with the plant."""
