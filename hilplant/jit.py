@@ -15,15 +15,15 @@ from platformdirs import user_cache_path
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def _sources_hash() -> str:
-    """Name the compiled code after every source it could be built from.
+def _sources_hash(*rooms: str) -> str:
+    """Name the compiled code after every source of these rooms that it could be built from.
 
     numba watches only the file of the compiled function itself, so an edit in a function that it calls would
     otherwise go on running as it was before.
     """
     digest = hashlib.sha256(numba.__version__.encode())
     package = Path(__file__).parent
-    for room in ("models", "surrogates"):
+    for room in rooms:
         for source in sorted((package / room).glob("*.py")):
             digest.update(source.read_bytes())
     for name in ("jit.py", "signals.py", "units.py"):
@@ -40,12 +40,12 @@ def _writable(folder: Path) -> bool:
 
 
 #: Changes when any model's source or the compiler changes; recordings carry it.
-MODELS_HASH = _sources_hash()
+MODELS_HASH = _sources_hash("models", "surrogates")
 
 
 def _cache_folder() -> Path:
     root = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("hilplant"))
-    folder = root / f"compiled-{MODELS_HASH}"
+    folder = root / f"compiled-{_sources_hash('models', 'surrogates', 'control')}"
     if _writable(folder):
         return folder
     passing = tempfile.mkdtemp(prefix="hilplant-compiled-")
@@ -60,3 +60,11 @@ def compiled(function: Function) -> Function:
     """Compile a model function. No fastmath: results must not depend on how the compiler reorders a sum."""
     # all that a step calls becomes one piece of code: calls between pieces cost a quarter of the step
     return cast(Function, numba.njit(cache=True, error_model="numpy", forceinline=True)(function))
+
+
+def compiled_for_threads(function: Function) -> Function:
+    """Compile a model function that runs long and lets other threads of Python run meanwhile.
+
+    Several threads may call it at once, each on arrays of its own.
+    """
+    return cast(Function, numba.njit(cache=True, error_model="numpy", nogil=True)(function))

@@ -16,7 +16,8 @@ Kind = Literal["real", "flag", "choice", "count"]
 class Signal:
     """One signal: its name, unit, permitted range (inclusive), meaning, and value until something else is said.
 
-    A count never falls; where it outgrows its frame it stays at the highest value, and that is no fault.
+    A count never falls; where it outgrows its frame it stays at the highest value, and that is no fault. A real
+    signal may have names for some of its values.
     """
 
     name: str
@@ -27,6 +28,7 @@ class Signal:
     kind: Kind = "real"
     default: float = 0.0
     choices: tuple[str, ...] = ()
+    names: tuple[tuple[str, float], ...] = ()
 
 
 def _flag(name: str, meaning: str) -> Signal:
@@ -37,23 +39,49 @@ def _count(name: str, meaning: str) -> Signal:
     return Signal(name, "", 0.0, 2.0**53, meaning, "count")
 
 
-SCREENS = ("dry", "wet")
+def _factor(name: str, meaning: str) -> Signal:
+    return Signal(name, "", 0.0, 100.0, meaning, default=1.0)
+
+
+SIDES = ("left", "right")
+
+#: Wetness of the screen, from 0 to 1: friction changes from the dry curve to the tacky one and from there to the wet.
+SCREENS = (("dry", 0.0), ("tacky", 0.5), ("wet", 1.0))
 MODES = ("waiting", "running", "safe", "degraded", "stopped")
+STALK_POSITIONS = ("off", "intermittent", "slow", "fast")
+ECU_STATES = (
+    "off", "flick", "single_wipe", "pause_1", "pause_2", "pause_3", "pause_4", "pause_5", "pause_6",
+    "slow", "fast", "wait", "int_wait", "slow_wait", "fast_wait", "washing", "wash_wipes",
+    "blind", "brown_out", "retry", "lockout",
+)  # fmt: skip
+ECU_FAULTS = (
+    "none", "stall", "park_never_closes", "park_never_opens", "park_bounces", "off_park", "park_unknown",
+    "brown_out", "stalk_lost",
+)  # fmt: skip
 
 #: What drives the plant, sampled once at the start of each tick.
 INPUTS = (
     _flag("relay_on", "ON/OFF relay: 1 connects the brush to the supply, 0 grounds it (braking)"),
     _flag("relay_fast", "FAST/SLOW relay: 1 selects the fast brush, 0 the slow brush"),
     Signal("supply_v", "V", 0.0, 40.0, "supply voltage at the ON/OFF relay", default=13.5),
-    Signal("screen", "", 0.0, len(SCREENS) - 1.0, "state of the windscreen", "choice", choices=SCREENS),
+    Signal("screen", "", 0.0, 1.0, "wetness of the windscreen: 0 dry, 0.5 tacky, 1 wet", names=SCREENS),
     Signal("vehicle_speed_m_s", "m/s", 0.0, 100.0, "speed of the vehicle through still air"),
     Signal("brake_torque_n_m", "N m", 0.0, 1000.0, "dry friction torque added at the crank; a large one blocks it"),
+    *(
+        Signal(
+            f"{side}_screen", "", -1.0, 1.0, f"wetness under the {side} blade; below 0 it is that of `screen`",
+            default=-1.0, names=(("same", -1.0), *SCREENS),
+        )
+        for side in SIDES
+    ),
+    *(_factor(f"{side}_wear", f"wear of the {side} blade: a factor on its friction coefficient") for side in SIDES),
+    *(_factor(f"{side}_force", f"factor on the force of the {side} arm on its blade") for side in SIDES),
 )
 
 #: What the plant shows at each tick, after the inputs of that tick and before the motor moves on.
 OUTPUTS = (
     Signal("supply_v", "V", 0.0, 40.0, "supply voltage in this tick"),
-    Signal("terminal_v", "V", 0.0, 40.0, "voltage at the connected brush; 0 when it is grounded"),
+    Signal("terminal_v", "V", -40.0, 40.0, "voltage from the connected brush to the common one; 0 when shorted or open"),
     Signal("current_a", "A", -500.0, 500.0, "armature current, positive from the brush to ground"),
     Signal("motor_speed_rad_s", "rad/s", -2000.0, 2000.0, "speed of the motor shaft"),
     Signal("crank_speed_rad_s", "rad/s", -200.0, 200.0, "speed of the crank"),
@@ -69,6 +97,12 @@ OUTPUTS = (
     _flag("relay_on", "ON/OFF relay as the plant saw it, after any safe state"),
     _flag("relay_fast", "FAST/SLOW relay as the plant saw it, after any safe state"),
     _flag("guard", "1 once a number that is not finite was caught; the motor is held still until a restart"),
+    Signal("terminal_53_v", "V", -500.0, 500.0, "terminal 53, slow brush, against ground"),
+    Signal("terminal_53b_v", "V", -500.0, 500.0, "terminal 53b, fast brush, against ground"),
+    Signal("terminal_53e_v", "V", -40.0, 40.0, "terminal 53e, from the park contact, against ground"),
+    Signal("terminal_31_v", "V", -40.0, 40.0, "terminal 31, common brush, against ground"),
+    Signal("left_force_n", "N", 0.0, 1e6, "force of the left blade on the screen, less lift"),
+    Signal("right_force_n", "N", 0.0, 1e6, "force of the right blade on the screen, less lift"),
 )
 
 #: How the server itself fares. Counts saturate in the frames that carry them, not here.
@@ -94,6 +128,21 @@ STATUS = (
     _count("ring_lost", "ticks or frames the recorder was too slow to take"),
 )
 
+#: What the stand-in ECU hears from the stalk, by the names of section 8.4 of Dooner (2016).
+STALK = (
+    Signal("master_input", "", 0.0, 3.0, "position of the stalk", "choice", choices=STALK_POSITIONS),
+    Signal("intermittent_switch", "", 1.0, 6.0, "which of the six pauses", default=1.0),
+    _flag("flick_wipe", "button for one fast wipe"),
+    _flag("wash", "button for washer and wipes"),
+)
+
+#: What the stand-in ECU tells of itself.
+ECU_STATUS = (
+    Signal("ecu_state", "", 0.0, len(ECU_STATES) - 1.0, "what the ECU is doing", "choice", choices=ECU_STATES),
+    Signal("ecu_fault", "", 0.0, len(ECU_FAULTS) - 1.0, "what the ECU found wrong", "choice", choices=ECU_FAULTS),
+    _count("ecu_tries", "tries that went wrong since the wiper last went well"),
+)
+
 INPUT_INDEX = {signal.name: index for index, signal in enumerate(INPUTS)}
 OUTPUT_INDEX = {signal.name: index for index, signal in enumerate(OUTPUTS)}
 STATUS_INDEX = {signal.name: index for index, signal in enumerate(STATUS)}
@@ -101,3 +150,9 @@ STATUS_INDEX = {signal.name: index for index, signal in enumerate(STATUS)}
 #: Signals that a sent frame may carry, in the order of the list that the codec reads.
 PUBLISHED = OUTPUTS + STATUS
 PUBLISHED_INDEX = {signal.name: index for index, signal in enumerate(PUBLISHED)}
+
+#: What the stand-in ECU hears and says: the plant's lists with its own behind them.
+ECU_HEARD = PUBLISHED + STALK
+ECU_SAID = INPUTS + ECU_STATUS
+ECU_HEARD_INDEX = {signal.name: index for index, signal in enumerate(ECU_HEARD)}
+ECU_SAID_INDEX = {signal.name: index for index, signal in enumerate(ECU_SAID)}

@@ -25,7 +25,7 @@ class Motion(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """What acts on the armature during one step, all SI, all seen at the motor shaft."""
+    """What acts on the armature for a while, all SI, all seen at the motor shaft; an open armature has constant 0."""
 
     voltage: float
     resistance: float
@@ -33,7 +33,7 @@ class Drive(NamedTuple):
     constant: float
     inertia: float
     damping: float  # of the motor and of its load
-    dry_torque: float  # dry friction: opposes motion, or holds the shaft still
+    dry_torque: float  # opposes motion whatever the speed: dry friction, and the constant part of the load
 
 
 @compiled
@@ -62,6 +62,8 @@ def glide(motion: Motion, drive: Drive, torque: float, time: float) -> Motion:
 
     Exact, the turned angle too: it follows from the time integrals of (3.30), not from a rule of quadrature.
     """
+    if drive.constant == 0.0:
+        return coast(motion, drive, torque, time)
     strength = drive.resistance * drive.damping + drive.constant * drive.constant
     final_current = (drive.voltage * drive.damping + drive.constant * torque) / strength
     final_speed = (drive.voltage * drive.constant - drive.resistance * torque) / strength
@@ -72,6 +74,23 @@ def glide(motion: Motion, drive: Drive, torque: float, time: float) -> Motion:
     flux = drive.constant * drive.inductance * (current - motion.current)
     momentum = drive.resistance * drive.inertia * (speed - motion.speed)
     return Motion(current, speed, motion.turned + final_speed * time - (flux + momentum) / strength)
+
+
+@compiled
+def coast(motion: Motion, drive: Drive, torque: float, time: float) -> Motion:
+    """Return the motion after `time` with the armature open: no current, J dw/dt = -d w - torque.
+
+    With x = d t / J, w falls by (d w + T)/d (1 - exp(-x)); small x, down to no damping at all, take the series.
+    """
+    x = drive.damping * time / drive.inertia
+    if x < 1e-3:
+        first = 1.0 - x * (0.5 - x * (1.0 / 6.0 - x / 24.0))
+        second = 0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x / 120.0))
+    else:
+        first = -math.expm1(-x) / x
+        second = (1.0 - first) / x
+    change = -(drive.damping * motion.speed + torque) / drive.inertia * time
+    return Motion(0.0, motion.speed + change * first, motion.turned + time * (motion.speed + change * second))
 
 
 @compiled

@@ -1,17 +1,84 @@
-"""Switching circuit of a relay-controlled wiper, section 7.1.1 of Dooner (2016)."""
+"""Switching circuit between battery and motor: what drives the armature, and what its terminals show.
+
+Voltage, current and speed are positive in the wiping direction in every circuit. Which end of the armature is the
+positive one then is the circuit's matter (:mod:`hilplant.models.wiring`), and seen at the terminals.
+"""
+
+from typing import NamedTuple
 
 from hilplant.jit import compiled
-from hilplant.models.records import Brush, Inputs, Motor
+from hilplant.models.park_phase import next_phase, phase_at_rest
+from hilplant.models.park_switch import Contact
+from hilplant.models.records import Brush, Inputs, Motor, Parameters, State
+from hilplant.models.wiring import CIRCUITS, DEPRESSED, MECHANICAL, Leads, depressed, digital, mechanical
+
+__all__ = ["CIRCUITS", "Connection", "connect", "next_phase", "phase_at_rest"]
+
+
+class Connection(NamedTuple):
+    """What the armature sees, and the motor's terminals against ground [V].
+
+    `terminal_v` lies between the brush in the circuit and the common one and drives the motor in the wiping
+    direction where it is positive. `closed` is 0 where the armature is open: its current is 0 then.
+    """
+
+    brush: Brush
+    terminal_v: float
+    closed: float
+    terminal_53_v: float
+    terminal_53b_v: float
+    terminal_53e_v: float
+    terminal_31_v: float
 
 
 @compiled
-def switch(inputs: Inputs, motor: Motor) -> tuple[Brush, float]:
-    """Return the brush in the circuit, and the voltage [V] between its terminal (53 or 53b) and ground (31).
+def connect(inputs: Inputs, parameters: Parameters, contact: Contact, park_phase: float, state: State) -> Connection:
+    """Return what the circuit of the park switch connects at this instant.
 
-    The ON/OFF relay connects the selected brush to the supply, or to ground: off is a short circuit through the
-    armature, which brakes. The brush that is not selected is open, so that one armature current exists in all
-    positions of the relays; it carries over when the FAST/SLOW relay changes, as in Appendix A.
+    `park_phase` is what :func:`next_phase` returned for this instant; only the depressed circuit reads it. While the
+    guard is set the armature is cut out: no park contact may drive it then.
     """
-    brush = motor.fast if inputs.relay_fast > 0.5 else motor.slow
-    terminal_v = inputs.supply_v if inputs.relay_on > 0.5 else 0.0
-    return brush, terminal_v
+    motor, circuit, speed = parameters.motor, parameters.park_switch.circuit, state.motor_speed_rad_s
+    if circuit == MECHANICAL:
+        connection = seen_by_armature(mechanical(inputs, contact), motor, 1.0, speed)
+    elif circuit == DEPRESSED:
+        connection = seen_by_armature(depressed(inputs, contact, park_phase), motor, -1.0, speed)
+    else:
+        connection = seen_by_armature(digital(inputs), motor, 1.0, speed)
+    return interrupted(connection) if state.guard > 0.5 else connection
+
+
+@compiled
+def interrupted(connection: Connection) -> Connection:
+    """Return the connection with its armature cut out: no voltage drives it, no current flows."""
+    return Connection(
+        connection.brush,
+        0.0,
+        0.0,
+        connection.terminal_53_v,
+        connection.terminal_53b_v,
+        connection.terminal_53e_v,
+        connection.terminal_31_v,
+    )
+
+
+@compiled
+def seen_by_armature(leads: Leads, motor: Motor, polarity: float, motor_speed_rad_s: float) -> Connection:
+    """Return brush, voltage and terminals; `polarity` is -1 where the motor wipes with its common brush positive.
+
+    A brush that nothing drives shows the common brush's potential and the back-EMF of its own constant; the
+    reaction of the armature current on it is neglected. What else nothing drives is shown at ground: the common
+    brush, and the line from the park contact unless it is joined to the slow brush.
+    """
+    common_v, slow_v, fast_v = leads.common.potential_v, leads.slow.potential_v, leads.fast.potential_v
+    if leads.slow.driven < 0.5:
+        slow_v = common_v + polarity * motor.slow.constant_v_s * motor_speed_rad_s
+    if leads.fast.driven < 0.5:
+        fast_v = common_v + polarity * motor.fast.constant_v_s * motor_speed_rad_s
+    park_v = slow_v if leads.joined > 0.5 else leads.park.potential_v
+    brush, terminal_v, closed = motor.slow, polarity * (slow_v - common_v), leads.slow.driven
+    if leads.fast.driven > 0.5:
+        brush, terminal_v, closed = motor.fast, polarity * (fast_v - common_v), 1.0
+    if closed * leads.common.driven < 0.5:
+        return Connection(brush, 0.0, 0.0, slow_v, fast_v, park_v, common_v)
+    return Connection(brush, terminal_v + 0.0, 1.0, slow_v, fast_v, park_v, common_v)

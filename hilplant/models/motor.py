@@ -7,6 +7,7 @@ chatter, and friction takes energy out or does nothing.
 """
 
 import math
+from typing import NamedTuple
 
 from hilplant.jit import compiled
 from hilplant.models.armature import Drive, Motion, acceleration, glide
@@ -21,57 +22,89 @@ SEARCH_CAP = 80
 SEARCH_TOLERANCE = 1e-14
 
 
+class Hold(NamedTuple):
+    """Torques of the motor [N m] from which a standing shaft breaks away, forwards and backwards.
+
+    Friction holds at least as much as a load pulls, so their sum is not negative; one of them may be.
+    """
+
+    forwards: float
+    backwards: float
+
+
 @compiled
 def advance(motion: Motion, drive: Drive, duration: float) -> Motion:
-    """Return the motion after `duration` [s].
+    """Return the motion after `duration` [s] against a dry torque that is the same in both directions.
 
     After `STRETCHES` stretches without an end the shaft stands still for what is left of the step: the answer
     that adds no energy. Costs one exponential of the matrix, and some ten more for each event.
     """
     if drive.dry_torque == 0.0:
         return glide(motion, drive, 0.0, duration)
+    hold = Hold(drive.dry_torque, drive.dry_torque)
     left, swings = duration, 0
     for _ in range(STRETCHES):
-        if motion.speed == 0.0 and abs(drive.constant * motion.current) <= drive.dry_torque:
-            motion, taken = stick(motion, drive, left)
+        direction = direction_of(motion, drive, hold)
+        if direction == 0.0:
+            motion, taken = stick(motion, drive, hold, left)
         else:
             # an oscillation decays: if its first period does not bring the speed to zero, nothing after it does
-            motion, taken = slide(motion, drive, min(left, half_period(drive)) if swings < 2 else left)
+            stretch = min(left, half_period(drive)) if swings < 2 else left
+            motion, taken = slide(motion, drive, direction, stretch)
         swings = swings + 1 if motion.speed != 0.0 else 0
         left -= taken
         if left <= 0.0:
             return motion
-    return Motion(held_current(motion.current, drive, left), 0.0, motion.turned)
+    return stand(motion, drive, left)
 
 
 @compiled
-def held_current(current: float, drive: Drive, time: float) -> float:
-    """Return the current [A] after `time` at standstill."""
+def direction_of(motion: Motion, drive: Drive, hold: Hold) -> float:
+    """Return +1 or -1 while the shaft turns or breaks away, 0 while it sticks."""
+    if motion.speed != 0.0:
+        return math.copysign(1.0, motion.speed)
+    torque = drive.constant * motion.current
+    if torque > hold.forwards:
+        return 1.0
+    return -1.0 if -torque > hold.backwards else 0.0
+
+
+@compiled
+def stand(motion: Motion, drive: Drive, time: float) -> Motion:
+    """Return the motion after `time` at standstill; without a circuit there is no current."""
+    if drive.constant == 0.0:
+        return Motion(0.0, 0.0, motion.turned)
     final = drive.voltage / drive.resistance
-    return final + (current - final) * math.exp(-time * drive.resistance / drive.inductance)
+    current = final + (motion.current - final) * math.exp(-time * drive.resistance / drive.inductance)
+    return Motion(current, 0.0, motion.turned)
 
 
 @compiled
-def stick(motion: Motion, drive: Drive, left: float) -> tuple[Motion, float]:
+def stick(motion: Motion, drive: Drive, hold: Hold, left: float) -> tuple[Motion, float]:
     """Stand still until the motor breaks away or the time is over; return the motion and the time taken.
 
-    The current approaches V/R without overshoot, so the instant at which K i reaches the dry torque is a logarithm.
-    There the current is set a few bits above it, so that the comparison that follows sees a sliding shaft.
+    The current approaches V/R without overshoot, so the instant at which K i reaches the held torque is a
+    logarithm. There the current is set a few bits beyond, so that what follows sees a sliding shaft.
     """
     final = drive.voltage / drive.resistance
-    threshold = math.copysign(drive.dry_torque / drive.constant, final)
-    if abs(final) > abs(threshold):
+    torque = drive.constant * final
+    if torque > hold.forwards or -torque > hold.backwards:
+        held = hold.forwards if torque > hold.forwards else -hold.backwards
+        threshold = held / drive.constant
         ratio = (final - motion.current) / (final - threshold)
         wait = math.log(max(1.0, ratio)) * drive.inductance / drive.resistance
         if wait < left:
-            return Motion(threshold * (1.0 + 1e-15), 0.0, motion.turned), wait
-    return Motion(held_current(motion.current, drive, left), 0.0, motion.turned), left
+            return Motion(threshold + 1e-15 * (final - threshold + abs(threshold) * math.copysign(1.0, torque)),
+                          0.0, motion.turned), wait  # fmt: skip
+    return stand(motion, drive, left), left
 
 
 @compiled
-def slide(motion: Motion, drive: Drive, stretch: float) -> tuple[Motion, float]:
-    """Slide in one direction until the speed comes to zero or the stretch is over; return motion and time taken."""
-    sign = math.copysign(1.0, motion.speed if motion.speed != 0.0 else motion.current)
+def slide(motion: Motion, drive: Drive, sign: float, stretch: float) -> tuple[Motion, float]:
+    """Slide in the direction `sign` until the speed comes to zero or the stretch is over; return motion and time taken.
+
+    A dry torque below zero, of a load that pulls, drives the shaft in that direction.
+    """
     torque = sign * drive.dry_torque
     end = glide(motion, drive, torque, stretch)
     below = stretch

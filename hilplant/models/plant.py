@@ -1,18 +1,15 @@
 """The whole step of the plant. Server, offline simulation, identification and replay all call this one."""
 
-import math
 from typing import Any
 
 from hilplant.jit import compiled
-from hilplant.models.armature import Drive, Motion
-from hilplant.models.circuit import switch
+from hilplant.models.armature import Motion
+from hilplant.models.circuit import connect, next_phase
 from hilplant.models.guard import admit, hold_if_wrong
-from hilplant.models.load import load_damping, load_torque
-from hilplant.models.lookup import hermite
-from hilplant.models.motor import advance
+from hilplant.models.load import Crank, Resistance, left_pressing, resist, right_pressing
+from hilplant.models.lookup import derivative, find, value, within_turn
 from hilplant.models.park_switch import contact_now
 from hilplant.models.records import (
-    Brush,
     Inputs,
     Outputs,
     Parameters,
@@ -21,7 +18,8 @@ from hilplant.models.records import (
     unpack_parameters,
     unpack_state,
 )
-from hilplant.units import TURN_RAD
+from hilplant.models.shaft import Train, load_torque, turn
+from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
 
 
 @compiled
@@ -36,42 +34,25 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     state, inputs, parameters
         See :mod:`hilplant.models.records`.
     tables
-        Array [2, n + 1, 2]: for the left and the right rocker, at even steps of the crank angle from 0 to one turn,
-        angle [rad] and derivative over the crank angle.
+        Array [knots + 1, channels, 2] over the crank angle; see :mod:`hilplant.models.tables`.
 
     """
     # 1 what is not finite stays outside
     state, inputs = admit(state, inputs)
     angle, speed = state.crank_angle_rad, state.motor_speed_rad_s / parameters.motor.gear_ratio
-    # 2 supply and relays
-    brush, terminal_v = switch(inputs, parameters.motor)
-    # 3 park switch
+    # 2 park switch
     contact = contact_now(angle, state.park_contact, state.bounce_left, parameters.park_switch)
+    phase = next_phase(inputs, parameters.park_switch, contact, state.park_phase, angle)
+    # 3 supply, relays and park circuit
+    connection = connect(inputs, parameters, contact, phase, state)
     # 4 kinematics and load at this instant
-    left_rocker, left_slope = hermite(tables, 0, angle)
-    right_rocker, right_slope = hermite(tables, 1, angle)
-    outputs = Outputs(
-        supply_v=inputs.supply_v,
-        terminal_v=terminal_v,
-        current_a=state.current_a,
-        motor_speed_rad_s=state.motor_speed_rad_s,
-        crank_speed_rad_s=speed,
-        crank_angle_rad=angle,
-        load_torque_n_m=load_torque(angle, speed, parameters.load, inputs.brake_torque_n_m),
-        park_contact=contact.shown,
-        left_arm_rad=left_rocker + parameters.left_arm.offset_rad,
-        right_arm_rad=right_rocker + parameters.right_arm.offset_rad,
-        left_rocker_rad=left_rocker,
-        right_rocker_rad=right_rocker,
-        left_blade_m_s=parameters.left_arm.length_m * left_slope * speed,
-        right_blade_m_s=parameters.right_arm.length_m * right_slope * speed,
-        relay_on=inputs.relay_on,
-        relay_fast=inputs.relay_fast,
-        guard=state.guard,
-    )
+    motion = Motion(state.current_a if connection.closed > 0.5 else 0.0, state.motor_speed_rad_s, 0.0)
+    train = Train(connection, tables, inputs, parameters)
+    crank = Crank(tables, find(tables, angle), angle, speed)
+    load = resist(crank, parameters.load, inputs)
+    outputs = measured(motion, crank, load, contact.shown, state.guard, train)
     # 5 motor and load together to the next tick
-    start = Motion(state.current_a, state.motor_speed_rad_s, 0.0)
-    motion = advance(start, drive_during_step(state, inputs, parameters, brush, terminal_v), parameters.step_s)
+    motion = turn(motion, angle, load, train)
     # 6 guard
     following = State(
         without_denormals(motion.current),
@@ -80,30 +61,43 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
         contact.closed,
         contact.bounce_left,
         state.guard,
+        phase,
     )
     return hold_if_wrong(following, angle), outputs
 
 
 @compiled
-def drive_during_step(
-    state: State, inputs: Inputs, parameters: Parameters, brush: Brush, terminal_v: float
-) -> Drive:
-    """Return what acts on the armature for one step, seen at the motor shaft, where (3.33) divides by the ratio.
-
-    Terminal voltage and brake torque are held; the load is held as torque over speed, taken at the angle at which
-    the crank will be half-way. That the load follows the speed within the step makes it stable however stiff it is.
-    """
-    motor, ratio = parameters.motor, parameters.motor.gear_ratio
-    speed = state.motor_speed_rad_s / ratio
-    half_way = state.crank_angle_rad + 0.5 * parameters.step_s * speed
-    return Drive(
-        voltage=terminal_v,
-        resistance=brush.resistance_ohm,
-        inductance=brush.inductance_henry,
-        constant=brush.constant_v_s,
-        inertia=motor.inertia_kg_m2,
-        damping=motor.damping_n_m_s + load_damping(half_way, speed, parameters.load) / (ratio * ratio),
-        dry_torque=motor.coulomb_torque_n_m + inputs.brake_torque_n_m / ratio,
+def measured(  # noqa: PLR0913, PLR0917
+    motion: Motion, crank: Crank, load: Resistance, park_contact: float, guard: float, train: Train
+) -> Outputs:
+    """Return what can be seen of the plant at this instant."""
+    inputs, parameters, connection = train.inputs, train.parameters, train.connection
+    tables, place = crank.tables, crank.place
+    left_rocker, right_rocker = value(tables, place, LEFT_ROCKER), value(tables, place, RIGHT_ROCKER)
+    return Outputs(
+        supply_v=inputs.supply_v,
+        terminal_v=connection.terminal_v,
+        current_a=motion.current,
+        motor_speed_rad_s=motion.speed,
+        crank_speed_rad_s=crank.speed_rad_s,
+        crank_angle_rad=crank.angle_rad,
+        load_torque_n_m=load_torque(motion, load, train),
+        park_contact=park_contact,
+        left_arm_rad=left_rocker + parameters.left_arm.offset_rad,
+        right_arm_rad=right_rocker + parameters.right_arm.offset_rad,
+        left_rocker_rad=left_rocker,
+        right_rocker_rad=right_rocker,
+        left_blade_m_s=parameters.left_arm.length_m * derivative(tables, place, LEFT_ROCKER) * crank.speed_rad_s,
+        right_blade_m_s=parameters.right_arm.length_m * derivative(tables, place, RIGHT_ROCKER) * crank.speed_rad_s,
+        relay_on=inputs.relay_on,
+        relay_fast=inputs.relay_fast,
+        guard=guard,
+        terminal_53_v=connection.terminal_53_v,
+        terminal_53b_v=connection.terminal_53b_v,
+        terminal_53e_v=connection.terminal_53e_v,
+        terminal_31_v=connection.terminal_31_v,
+        left_force_n=left_pressing(crank, parameters.load, inputs).force_n,
+        right_force_n=right_pressing(crank, parameters.load, inputs).force_n,
     )
 
 
@@ -111,15 +105,6 @@ def drive_during_step(
 def without_denormals(value: float) -> float:
     """Return 0 for what is too small to matter: decays would end in numbers that cost a hundred times more."""
     return 0.0 if abs(value) < 1e-30 else value
-
-
-@compiled
-def within_turn(angle: float) -> float:
-    """Return the same angle in [0, 2 pi); not-a-number stays what it is."""
-    if 0.0 <= angle < TURN_RAD:
-        return angle
-    wrapped = angle - TURN_RAD * math.floor(angle / TURN_RAD)
-    return wrapped if 0.0 <= wrapped < TURN_RAD else wrapped * 0.0
 
 
 @compiled
@@ -132,9 +117,7 @@ def tick(state_row: Any, input_row: Any, parameter_row: Any, tables: Any, output
 
 
 @compiled
-def simulate_rows(
-    state_row: Any, input_rows: Any, parameter_row: Any, tables: Any, output_rows: Any
-) -> None:
+def simulate_rows(state_row: Any, input_rows: Any, parameter_row: Any, tables: Any, output_rows: Any) -> None:
     """Take one step for each row of inputs, and leave its outputs in the same row of `output_rows`."""
     parameters = unpack_parameters(parameter_row)
     state = unpack_state(state_row)
@@ -147,5 +130,5 @@ def simulate_rows(
 @compiled
 def write(record: tuple[float, ...], row: Any) -> None:
     """Write a record of floats into its row."""
-    for index, value in enumerate(record):
-        row[index] = value
+    for index, number in enumerate(record):
+        row[index] = number

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hilplant.models.plant import simulate_rows
-from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State, pack
+from hilplant.models.records import Arm, Brush, Inputs, Load, Motor, Parameters, ParkSwitch, State, pack
 from hilplant.signals import OUTPUT_INDEX, OUTPUTS
 
 MOTOR = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2), 1.983e-5, 1.582e-4, 0.045, 63.0)
@@ -14,11 +14,11 @@ STEP_S = 1e-5
 def test_the_energy_balance_closes_over_start_brake_and_stop() -> None:
     arm, switch = Arm(0.0, 0.5), ParkSwitch(0.0, 0.1, 0.0, 0.0)
     parameters = pack(Parameters(STEP_S, MOTOR, switch, Load(1.0, 0.0035, 0.2738), arm, arm))
-    inputs = np.tile([1.0, 0.0, 13.5, 0.0, 0.0, 0.0], (50_000, 1))
+    inputs = np.tile(pack(Inputs(1.0, 0.0, 13.5, 0.0, 0.0, 0.0)), (50_000, 1))
     inputs[20_000:30_000, 5] = 8.0
     inputs[40_000:, 0] = 0.0
     outputs = np.empty((len(inputs), len(OUTPUTS)))
-    simulate_rows(pack(State(0.0, 0.0, 0.0, 1.0, 0.0, 0.0)), inputs, parameters, np.zeros((2, 9, 2)), outputs)
+    simulate_rows(pack(State(0.0, 0.0, 0.0, 1.0, 0.0, 0.0)), inputs, parameters, np.zeros((9, 9, 2)), outputs)
     current, speed, voltage = (outputs[:, OUTPUT_INDEX[n]] for n in ("current_a", "motor_speed_rad_s", "terminal_v"))
     load, crank = outputs[:, OUTPUT_INDEX["load_torque_n_m"]], outputs[:, OUTPUT_INDEX["crank_speed_rad_s"]]
 

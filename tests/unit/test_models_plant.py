@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from hilplant.models import tables as channel
 from hilplant.models.plant import simulate_rows, tick
 from hilplant.models.records import (
     Arm,
@@ -36,7 +37,10 @@ Rows = NDArray[np.float64]
 
 def tables() -> Rows:
     angle = np.linspace(0.0, 2.0 * math.pi, 361)
-    return np.ascontiguousarray([np.stack([a * np.sin(angle), a * np.cos(angle)], axis=1) for a in (0.7, 0.6)])
+    channels = np.zeros((361, channel.channels(1), 2))
+    for rocker, swing in ((channel.LEFT_ROCKER, 0.7), (channel.RIGHT_ROCKER, 0.6)):
+        channels[:, rocker] = np.stack([swing * np.sin(angle), swing * np.cos(angle)], axis=1)
+    return channels
 
 
 def run(inputs: Rows, state: State = START, parameters: Parameters = PARAMETERS) -> Any:
@@ -63,7 +67,8 @@ def test_packing_and_unpacking_are_inverse() -> None:
 
 def test_tick_by_tick_gives_the_same_bits_as_all_rows_at_once() -> None:
     random = np.random.default_rng(3)
-    inputs = np.repeat(random.uniform(0, 1, (60, 6)) * [1.0, 1.0, 14.0, 1.0, 30.0, 40.0], 25, axis=0)
+    largest = [1.0, 1.0, 14.0, 1.0, 30.0, 40.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0]
+    inputs = np.repeat(random.uniform(0, 1, (60, len(INPUTS))) * largest, 25, axis=0)
     at_once, one_by_one = np.empty((2, len(inputs), len(OUTPUTS)))
     states = np.array([pack(START)] * 2)
     simulate_rows(states[0], inputs, pack(PARAMETERS), tables(), at_once)

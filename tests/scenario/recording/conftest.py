@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from hilplant.bus.frame import Frame
+from hilplant.models import tables as channel
 from hilplant.models.plant import tick
 from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State, pack
 from hilplant.recording.drain import RecordingWriter
@@ -29,10 +30,12 @@ ARM = Arm(0.3, 0.5)
 
 
 def tables(knots: int = 360) -> NDArray[np.float64]:
-    """Two rockers that swing as a cosine of the crank angle."""
+    """Two rockers that swing as a cosine of the crank angle; the other channels are of no concern without a load."""
     crank = np.linspace(0.0, 2 * np.pi, knots + 1)
     swing = np.stack([0.8 - 0.7 * np.cos(crank), 0.7 * np.sin(crank)], axis=-1)
-    return np.ascontiguousarray(np.stack([swing, 1.1 * swing]))
+    channels = np.zeros((knots + 1, channel.channels(1), 2))
+    channels[:, channel.LEFT_ROCKER], channels[:, channel.RIGHT_ROCKER] = swing, 1.1 * swing
+    return channels
 
 
 @dataclass(frozen=True)

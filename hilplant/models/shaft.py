@@ -1,0 +1,142 @@
+"""Motor, gear and load together over one step.
+
+Between evaluations of the load the motion is the closed form of :mod:`hilplant.models.armature`. The load is taken
+at the angle and the speed that are expected half-way, which makes the error fall with the square of the step, and
+friction enters as its tangent, which keeps the step stable however steep the curve is. Where the speed is about to
+change much by the measure of the friction curves, which is close to standstill, the step is cut.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+from hilplant.jit import compiled
+from hilplant.models.armature import Drive, Motion, acceleration
+from hilplant.models.circuit import Connection
+from hilplant.models.gear import held_torque, through_gear
+from hilplant.models.load import REDUCED, Crank, Resistance, by_speed, reduced
+from hilplant.models.lookup import find, within_turn
+from hilplant.models.motor import Hold, advance, direction_of, half_period, slide, stand, stick
+from hilplant.models.records import Inputs, Parameters
+
+#: In one stretch the speed changes by this part of itself at most ...
+CHANGE = 0.25
+#: ... or of this speed of the crank [rad/s], where it is slower.
+SLOW_RAD_S = 0.01
+
+#: The shortest stretch that is chosen, as a part of the step.
+SHORTEST = 1.0 / 40.0
+
+#: Stretches in one step, at most: those chosen, and those that end in a stop or a start.
+STRETCHES = 64
+
+
+class Train(NamedTuple):
+    """What stays as it is during one step."""
+
+    connection: Connection
+    tables: Any
+    inputs: Inputs
+    parameters: Parameters
+
+
+class Ahead(NamedTuple):
+    """How long the next stretch is [s], and what is expected half-way: the motion, and the mean speed."""
+
+    stretch: float
+    half_way: Motion
+
+
+@compiled
+def drive_at(motion: Motion, direction: float, load: Resistance, train: Train) -> Drive:
+    """Return what acts on the armature while it turns in `direction`."""
+    return through_gear(load, direction, motion, train.connection, train.parameters.motor)
+
+
+@compiled
+def load_torque(motion: Motion, load: Resistance, train: Train) -> float:
+    """Return the torque at the crank [N m], inertia and brake included, positive when it opposes motion; 0 at rest."""
+    if motion.speed == 0.0:
+        return 0.0
+    direction, ratio = math.copysign(1.0, motion.speed), train.parameters.motor.gear_ratio
+    torque = direction * load.bias + load.dry + load.slope * abs(motion.speed) / ratio
+    if load.inertia != 0.0:
+        drive = drive_at(motion, direction, load, train)
+        torque += load.inertia * direction * acceleration(motion, drive, direction * drive.dry_torque) / ratio
+    return torque
+
+
+@compiled
+def turn(motion: Motion, crank_angle_rad: float, load: Resistance, train: Train) -> Motion:
+    """Return the motion one step later; `load` is that at the start."""
+    if train.parameters.load.model == REDUCED:
+        return turn_in_stretches(motion, crank_angle_rad, load, train)
+    duration, crank_speed = train.parameters.step_s, motion.speed / train.parameters.motor.gear_ratio
+    half_way = crank_angle_rad + 0.5 * duration * crank_speed
+    held = by_speed(half_way, crank_speed, train.parameters.load, train.inputs)
+    return advance(motion, drive_at(motion, 1.0, held, train), duration)
+
+
+@compiled
+def turn_in_stretches(motion: Motion, crank_angle_rad: float, load: Resistance, train: Train) -> Motion:
+    """Return the motion one step later, with the load evaluated anew in each stretch.
+
+    After `STRETCHES` stretches without an end the shaft stands still for what is left of the step.
+    """
+    left, ratio = train.parameters.step_s, train.parameters.motor.gear_ratio
+    drive = drive_at(motion, math.copysign(1.0, motion.speed), load, train)
+    direction = 0.0
+    if motion.speed == 0.0:
+        motion, taken, direction = let_go(motion, drive, load, left, train)
+        left -= taken
+    for _ in range(STRETCHES):
+        if left <= 0.0:
+            return motion
+        if motion.speed != 0.0:
+            direction = math.copysign(1.0, motion.speed)
+        ahead = look_ahead(motion, drive, direction, left, train)
+        angle = within_turn(crank_angle_rad + ahead.half_way.turned / ratio)
+        crank = Crank(train.tables, find(train.tables, angle), angle, ahead.half_way.speed / ratio)
+        load = reduced(crank, train.parameters.load, train.inputs)
+        if direction == 0.0:
+            motion, taken, direction = let_go(motion, drive, load, left, train)
+        else:
+            drive = drive_at(ahead.half_way, direction, load, train)
+            motion, taken = slide(motion, drive, direction, min(ahead.stretch, half_period(drive)))
+            direction = 0.0
+        left -= taken
+    return stand(motion, drive, left)
+
+
+@compiled
+def let_go(motion: Motion, drive: Drive, load: Resistance, left: float, train: Train) -> tuple[Motion, float, float]:
+    """Stand still until the motor breaks away or the time is over; return motion, time taken, and direction or 0."""
+    motor = train.parameters.motor
+    hold = Hold(held_torque(load, 1.0, motor), held_torque(load, -1.0, motor))
+    direction = direction_of(motion, drive, hold)
+    if direction != 0.0:
+        return motion, 0.0, direction
+    motion, taken = stick(motion, drive, hold, left)
+    return motion, taken, direction_of(motion, drive, hold)
+
+
+@compiled
+def look_ahead(motion: Motion, drive: Drive, direction: float, left: float, train: Train) -> Ahead:
+    """Return the next stretch, from the acceleration and its derivative at its start.
+
+    At standstill, direction 0, the middle of the stretch is its start.
+    """
+    if direction == 0.0:
+        return Ahead(left, motion)
+    duration, slow = train.parameters.step_s, SLOW_RAD_S * train.parameters.motor.gear_ratio
+    back_emf = drive.constant * motion.speed
+    rising = (drive.voltage - drive.resistance * motion.current - back_emf) / drive.inductance
+    push, jerk = acceleration(motion, drive, direction * drive.dry_torque), drive.constant * rising / drive.inertia
+    limit = CHANGE * max(abs(motion.speed), slow)
+    stretch = left
+    if left * (abs(push) + 0.5 * abs(jerk) * left) > limit:
+        stretch = 2.0 * limit / (abs(push) + math.sqrt(push * push + 2.0 * abs(jerk) * limit))
+        stretch = min(left, max(SHORTEST * duration, stretch))
+    mean = motion.speed + stretch * (0.5 * push + stretch * jerk / 6.0)
+    turned = motion.turned + 0.5 * stretch * (motion.speed + 0.25 * stretch * push)
+    half_way = Motion(motion.current + 0.5 * stretch * rising, mean if direction * mean > 0.0 else 0.0, turned)
+    return Ahead(stretch, half_way)

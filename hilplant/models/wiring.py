@@ -1,0 +1,111 @@
+"""What switches, relays and park contacts connect: digital, mechanical, depressed; 3.6 and 7.1.1 of Dooner (2016).
+
+Each circuit is a function from the positions of its switches and contacts to the potentials that they put on the
+motor's brushes, in the order in which the text follows the current. `docs/park.md` has the tables.
+"""
+
+from typing import NamedTuple
+
+from hilplant.jit import compiled
+from hilplant.models.park_switch import Contact
+from hilplant.models.records import Inputs
+
+#: The circuits; `ParkSwitch.circuit` is the place of one in this list.
+CIRCUITS = ("digital", "mechanical", "depressed")
+DIGITAL, MECHANICAL, DEPRESSED = 0.0, 1.0, 2.0
+
+#: Positions of the mutually controlled switches 1, 2 and 3.
+OFF, SLOW, FAST = 0.0, 1.0, 2.0
+
+#: Positions of the mutually controlled park contacts A and B of the depressed circuit: `State.park_phase`.
+WIPING, TURNING_BACK, PARKED = 0.0, 1.0, 2.0
+
+
+class Lead(NamedTuple):
+    """A wire: its potential [V] where something drives it (`driven` 1), or left open (`driven` 0)."""
+
+    potential_v: float
+    driven: float
+
+
+class Leads(NamedTuple):
+    """What the switches put on slow brush, fast brush, common brush, and on the line from the park contact.
+
+    `joined` is 1 where a switch connects that line with the slow brush.
+    """
+
+    slow: Lead
+    fast: Lead
+    common: Lead
+    park: Lead
+    joined: float
+
+
+@compiled
+def switch_position(inputs: Inputs) -> float:
+    """Return the position of switches 1, 2 and 3: OFF whenever the ON/OFF relay is, else as FAST/SLOW says."""
+    if inputs.relay_on <= 0.5:
+        return OFF
+    return FAST if inputs.relay_fast > 0.5 else SLOW
+
+
+@compiled
+def digital(inputs: Inputs) -> Leads:
+    """Connect as in section 7.1.1 (Figure 7-1): the park contact reports and carries no current.
+
+    The ON/OFF relay gives battery or ground, the FAST/SLOW relay takes that to one brush and leaves the other open.
+    So off is a short circuit through the armature, which brakes.
+    """
+    battery, ground, nothing = Lead(inputs.supply_v, 1.0), Lead(0.0, 1.0), Lead(0.0, 0.0)
+    on_off = battery if inputs.relay_on > 0.5 else ground
+    if inputs.relay_fast > 0.5:
+        return Leads(nothing, on_off, ground, nothing, 0.0)
+    return Leads(on_off, nothing, ground, nothing, 0.0)
+
+
+@compiled
+def mechanical(inputs: Inputs, contact: Contact) -> Leads:
+    """Connect as in section 3.6.1 (Figure 3-15): switched off, the motor is fed through the park contact.
+
+    While the contact bounces it touches neither battery nor ground.
+    """
+    battery, ground, nothing = Lead(inputs.supply_v, 1.0), Lead(0.0, 1.0), Lead(0.0, 0.0)
+    position = switch_position(inputs)
+    # the park contact: battery on the way, ground at park
+    park = ground if contact.closed > 0.5 else battery
+    if contact.shown != contact.closed:
+        park = nothing
+    # switch 1: battery to the slow or the fast brush, or to none
+    slow = battery if position == SLOW else nothing
+    fast = battery if position == FAST else nothing
+    # switch 2: when off, the park contact to the slow brush
+    if position == OFF:
+        return Leads(park, fast, ground, park, 1.0)
+    return Leads(slow, fast, ground, park, 0.0)
+
+
+@compiled
+def depressed(inputs: Inputs, contact: Contact, park_phase: float) -> Leads:
+    """Connect as in section 3.6.2 (Figure 3-19): running, the common brush is fed; at park the current turns round.
+
+    Contacts A and B move, and bounce, when the cam reaches park. The way of the slow brush to ground while the
+    motor runs to park leads through switch 1, contact B and switch 2: were it not through B, battery would meet
+    ground in the next position, in which B feeds the slow brush.
+    """
+    battery, ground, nothing = Lead(inputs.supply_v, 1.0), Lead(0.0, 1.0), Lead(0.0, 0.0)
+    position = switch_position(inputs)
+    # switch 2: ground to the slow or the fast brush, when off to contact B
+    slow = ground if position == SLOW else nothing
+    fast = ground if position == FAST else nothing
+    off = ground if position == OFF else nothing
+    # park contacts: A for the common brush, B for the slow one
+    contact_a, contact_b = battery, off
+    if park_phase == TURNING_BACK:
+        contact_a, contact_b = ground, battery
+    bouncing = contact.closed > 0.5 and contact.shown != contact.closed
+    if park_phase == PARKED or (park_phase == TURNING_BACK and bouncing):
+        contact_a, contact_b = nothing, nothing
+    # switches 1 and 3: when off, contact B to the slow brush and contact A to the common one; else battery to it
+    if position == OFF:
+        return Leads(contact_b, fast, contact_a, contact_b, 1.0)
+    return Leads(slow, fast, battery, contact_b, 0.0)
