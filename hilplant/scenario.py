@@ -16,8 +16,12 @@ from hilplant.bench.problems import suggestion
 from hilplant.bench.reading import Reading
 from hilplant.bench.values import signal_value
 from hilplant.bench.yaml_reader import Document, Location
+from hilplant.failure import Failure
 from hilplant.signals import INPUT_INDEX, INPUTS, Signal
 from hilplant.units import SECOND_NS
+
+#: Name of the value by which a signal takes that of another.
+_SAME = "same"
 
 _Pair = Annotated[list[Any], Field(min_length=2, max_length=2)]
 
@@ -60,7 +64,7 @@ class Scenario:
         rows = np.tile(input_row, (round(self.seconds * SECOND_NS / step_ns), 1))
         for index, entries in self.entries.items():
             for entry in entries:
-                _apply(rows[:, index], entry, step_ns)
+                _apply(rows[:, index], entry, step_ns, INPUTS[index])
         return rows
 
 
@@ -133,17 +137,28 @@ def _entry(reading: Reading, document: Document, location: Location, signal: Sig
     try:
         if ramp_s and signal.kind != "real":
             raise ValueError(f"{signal.name} is a {signal.kind} and cannot follow a ramp; give it a value")
-        return signal_value(signal, written), ramp_s
+        value = signal_value(signal, written)
+        if ramp_s and _is_no_quantity(signal, value):
+            raise ValueError(f"{signal.name} cannot ramp to '{_SAME}'; ramp to a number from 0 on, then say '{_SAME}'")
+        return value, ramp_s
     except ValueError as error:
         reading.note(document, location, str(error))
         return None
 
 
-def _apply(column: NDArray[np.float64], entry: Entry, step_ns: int) -> None:
+def _is_no_quantity(signal: Signal, value: float) -> bool:
+    """Say whether a value stands for that of another signal, which no ramp can lead to or from."""
+    return _SAME in dict(signal.names) and value < 0.0
+
+
+def _apply(column: NDArray[np.float64], entry: Entry, step_ns: int, signal: Signal) -> None:
     """Write one entry over what came before it."""
     first, ticks = (round(seconds * SECOND_NS / step_ns) for seconds in (entry.time_s, entry.ramp_s))
     if first >= len(column):
         return
+    if ticks and _is_no_quantity(signal, column[first]):
+        text = f"{signal.name} is '{_SAME}' when its ramp at {entry.time_s:g} s begins; give it a value before"
+        raise Failure(text)
     ramp = np.linspace(column[first], entry.value, ticks, endpoint=False)[: len(column) - first]
     column[first:] = entry.value
     column[first : first + len(ramp)] = ramp

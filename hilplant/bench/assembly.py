@@ -10,16 +10,19 @@ from numpy.typing import NDArray
 
 from hilplant import resources
 from hilplant.bench.bus import assemble_bus
-from hilplant.bench.description import BenchFile, EcuSettings, InitialSection, LoopSettings
+from hilplant.bench.description import BenchFile, InitialSection, LoopSettings
+from hilplant.bench.ecu_description import EcuSettings
+from hilplant.bench.ecu_messages import EcuMessages, assemble_ecu_messages
 from hilplant.bench.ecu_side import EcuSide, build_ecu_side
 from hilplant.bench.inheritance import read_bench_file
 from hilplant.bench.mapping import MappedMessage
 from hilplant.bench.place import Place
-from hilplant.bench.plant import assemble_plant
+from hilplant.bench.plant import Plant, assemble_plant
 from hilplant.bench.problems import BenchError, Problem
 from hilplant.bench.reading import Description, Reading
 from hilplant.bench.values import signal_values
 from hilplant.bus.codec import ReceivedMessage, SentMessage
+from hilplant.models.park_phase import phase_at_rest
 from hilplant.models.park_switch import cam_closed
 from hilplant.models.records import Parameters, State, pack
 from hilplant.signals import INPUTS
@@ -32,12 +35,14 @@ class Bench:
 
     `parameter_row`, `state_row` and `input_row` are flat rows for compiled code (see
     :mod:`hilplant.models.records`), the last two with the values at the start; `safe` are inputs by index
-    with their values while commands are lost; `sources` is the text of every file that was read, by its name.
+    with their values while commands are lost; `sources` is the text of every file that was read, by its name;
+    `plant` is what the rows and tables were made from.
     """
 
     name: str
     path: Path
     step_ns: int
+    plant: Plant
     parameters: Parameters
     parameter_row: NDArray[np.float64]
     tables: NDArray[np.float64]
@@ -53,11 +58,21 @@ class Bench:
     sources: dict[str, str]
     commands: tuple[MappedMessage, ...]
     reports: tuple[MappedMessage, ...]
+    ecu_messages: EcuMessages
+
+    @property
+    def others(self) -> frozenset[tuple[int, bool]]:
+        """Identifiers of the messages between the ECU and its driver, with whether they are extended."""
+        own = self.ecu_messages
+        identifiers = [(message.identifier, message.extended) for message in own.stalk]
+        return frozenset(identifiers + [(message.identifier, message.extended) for message in own.status])
 
     def ecu_side(self) -> EcuSide:
         """Return the same messages as the stand-in ECU sees them: it sends what the plant receives."""
         periods_ns = {message.name: message.period_ns for message in self.send}
-        return build_ecu_side(self.commands, self.reports, periods_ns, self.ecu)
+        sent = [mapped for mapped in self.reports if mapped.message.name in periods_ns]
+        reports = [(mapped, periods_ns[mapped.message.name]) for mapped in sent]
+        return build_ecu_side(self.commands, reports, self.ecu.period_ms, self.ecu_messages)
 
 
 def load_bench(name: str | Path = "default") -> Bench:
@@ -90,7 +105,8 @@ def initial_state(parameters: Parameters, initial: Mapping[str, float]) -> NDArr
     """Return the row of the state in which a run begins; the park switch is at rest there."""
     crank_angle_rad = initial["crank_angle_rad"]
     contact = cam_closed(crank_angle_rad, 0.0, parameters.park_switch)
-    state = State(initial["current_a"], initial["motor_speed_rad_s"], crank_angle_rad, contact, 0.0, 0.0)
+    phase = phase_at_rest(crank_angle_rad, parameters.park_switch)
+    state = State(initial["current_a"], initial["motor_speed_rad_s"], crank_angle_rad, contact, 0.0, 0.0, phase)
     return pack(state)
 
 
@@ -103,12 +119,14 @@ def _assemble(reading: Reading, path: Path) -> Bench | None:
     step_ns = settings.step_ns if settings is not None else MILLISECOND_NS  # so that the rest can be checked
     plant = assemble_plant(file.inner("plant"), step_ns) if _is_group(file, "plant") else None
     bus = assemble_bus(file.inner("bus"), step_ns) if _is_group(file, "bus") else None
+    ecu_messages = assemble_ecu_messages(file.inner("ecu"), bus) if bus is not None else EcuMessages()
     if settings is None or plant is None or bus is None or reading.problems:
         return None
     return Bench(
         name=settings.name,
         path=path,
         step_ns=step_ns,
+        plant=plant,
         parameters=plant.parameters,
         parameter_row=pack(plant.parameters),
         tables=plant.tables,
@@ -124,6 +142,7 @@ def _assemble(reading: Reading, path: Path) -> Bench | None:
         sources=reading.sources,
         commands=bus.commands,
         reports=bus.reports,
+        ecu_messages=ecu_messages,
     )
 
 

@@ -1,6 +1,6 @@
 """The bus section of a bench -> the messages of the plant, and what holds when commands are lost."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -13,7 +13,7 @@ from hilplant.bench.values import signal_values
 from hilplant.bus.codec import ReceivedMessage, SentMessage, received_message, sent_message
 from hilplant.bus.mapping import MappingError
 from hilplant.bus.transport import wrong_interface
-from hilplant.signals import INPUT_INDEX, INPUTS, PUBLISHED
+from hilplant.signals import INPUT_INDEX, INPUTS, PUBLISHED, Signal
 
 RELAYS_OPEN = {"relay_on": False, "relay_fast": False}
 
@@ -30,6 +30,7 @@ class Bus:
     send: tuple[SentMessage, ...] = ()
     commands: tuple[MappedMessage, ...] = ()
     reports: tuple[MappedMessage, ...] = ()
+    database: Database | None = None
 
 
 def assemble_bus(bus: Place, step_ns: int) -> Bus:
@@ -41,8 +42,8 @@ def assemble_bus(bus: Place, step_ns: int) -> Bus:
     database = read_database(bus.inner("database"))
     if database is None:
         return Bus(interface, safe)
-    received = [_receive(place, database) for place in _groups(bus.inner("receive"))]
-    sent = [_send(place, database, step_ns) for place in _groups(bus.inner("send"))]
+    received = [receive_entry(place, database, INPUTS) for place in _groups(bus.inner("receive"))]
+    sent = [send_entry(place, database, PUBLISHED, step_ns) for place in _groups(bus.inner("send"))]
     commands = [pair for pair in received if pair is not None]
     reports = [pair for pair in sent if pair is not None]
     _refuse_one_identifier(bus, [message for _, message in commands], [message for _, message in reports])
@@ -55,6 +56,7 @@ def assemble_bus(bus: Place, step_ns: int) -> Bus:
         tuple(message for _, message in reports),
         tuple(mapped for mapped, _ in commands),
         tuple(mapped for mapped, _ in reports),
+        database,
     )
 
 
@@ -75,26 +77,32 @@ def _groups(place: Place) -> Iterator[Place]:
             yield place.inner(name)
 
 
-def _receive(place: Place, database: Database) -> tuple[MappedMessage, ReceivedMessage] | None:
+def receive_entry(
+    place: Place, database: Database, signals: Sequence[Signal], first: int = 0
+) -> tuple[MappedMessage, ReceivedMessage] | None:
+    """Build a message that is taken in; its entry may name those of the signals from `first` on."""
     message, entry = database.message(place), place.take(ReceiveEntry)
     if message is None or entry is None:
         return None
-    mapped = map_message(place, message, entry, INPUTS)
+    mapped = map_message(place, message, entry, signals[first:])
     timeout = timeout_ns(place, message, entry)
     if mapped is None:
         return None
-    return _both(place, mapped, lambda: received_message(message, mapped.mappings, INPUTS, timeout, mapped.protection))
+    return _both(place, mapped, lambda: received_message(message, mapped.mappings, signals, timeout, mapped.protection))
 
 
-def _send(place: Place, database: Database, step_ns: int) -> tuple[MappedMessage, SentMessage] | None:
+def send_entry(
+    place: Place, database: Database, signals: Sequence[Signal], step_ns: int, first: int = 0
+) -> tuple[MappedMessage, SentMessage] | None:
+    """Build a message that is sent in multiples of `step_ns`; otherwise as for one that is taken in."""
     message, entry = database.message(place), place.take(SendEntry)
     if message is None or entry is None:
         return None
-    mapped = map_message(place, message, entry, PUBLISHED)
-    timing = sending(place, message, entry, step_ns)
+    mapped = map_message(place, message, entry, signals[first:])
+    timing = sending(place, message, entry, step_ns, signals[first:])
     if mapped is None:
         return None
-    return _both(place, mapped, lambda: sent_message(message, mapped.mappings, PUBLISHED, timing, mapped.protection))
+    return _both(place, mapped, lambda: sent_message(message, mapped.mappings, signals, timing, mapped.protection))
 
 
 def _both(place: Place, mapped: MappedMessage, build: Callable[[], Built]) -> tuple[MappedMessage, Built] | None:

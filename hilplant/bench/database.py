@@ -23,6 +23,10 @@ class Database:
         self._names = Counter(message.name for message in messages)
         self._file = file
 
+    def has(self, name: str) -> bool:
+        """Whether there is a message of this name."""
+        return name in self._messages
+
     def message(self, place: Place) -> Any | None:
         """Return the message that a group of the bench is named after; None, noted, when there is not one."""
         if self._names[place.name] > 1:

@@ -1,14 +1,15 @@
 """What a bench file may say: one model for each of its sections, which are checked one by one.
 
 Sections are separate so that a mistake in one does not hide the mistakes in another. Cross-checks against the
-database, the step or other files are in :mod:`hilplant.bench.mapping` and :mod:`hilplant.bench.assembly`.
+database, the step or other files are in :mod:`hilplant.bench.mapping` and :mod:`hilplant.bench.assembly`. The plant's
+sections are in :mod:`hilplant.bench.plant_description`, the ECU's in :mod:`hilplant.bench.ecu_description`.
 """
 
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from hilplant.bench.checked import Checked, Name, NotNegative, Positive, Real, wrong
+from hilplant.bench.checked import Checked, Name, NotNegative, Real, wrong
 from hilplant.units import TURN_RAD
 
 Group = dict[str, Any]
@@ -30,51 +31,6 @@ class BenchFile(Checked):
     inputs: OptionalGroup
     loop: OptionalGroup
     ecu: OptionalGroup
-
-
-class PlantSection(Checked):
-    """What stands on the bench."""
-
-    motor: Name
-    linkage: Name
-    load: Group
-    park_switch: Group
-
-
-class NoLoad(Checked):
-    """Nothing but the linkage, without weight."""
-
-    model: Literal["none"]
-
-
-class PolynomialLoad(Checked):
-    """No-load torque fitted over angle and speed, (6.1)-(6.3)."""
-
-    model: Literal["polynomial"]
-    c1: NotNegative
-    c2: NotNegative
-
-
-class LoadChoice(Checked):
-    """The load, chosen by the name of its model."""
-
-    load: Annotated[NoLoad | PolynomialLoad, Field(discriminator="model")]
-
-
-class ParkSwitchSection(Checked):
-    """Contact over the crank angle."""
-
-    park_angle_deg: Annotated[float, Field(ge=0, lt=360)]
-    window_deg: Annotated[float, Field(gt=0, lt=360)]
-    hysteresis_deg: NotNegative = 0.0
-    bounce_ms: NotNegative = 0.0
-
-    @model_validator(mode="after")
-    def _window_within_turn(self) -> Self:
-        if self.window_deg + 2.0 * self.hysteresis_deg >= 360.0:
-            text = "hysteresis_deg must leave a gap: window_deg + 2 hysteresis_deg must be below 360"
-            raise wrong("hysteresis_deg", text=text)
-        return self
 
 
 class InitialSection(Checked):
@@ -155,10 +111,3 @@ class LoopSettings(Checked):
         if self.reopen_ms[0] > self.reopen_ms[1]:
             raise wrong("reopen_ms", text="reopen_ms must be [first pause, longest pause], rising")
         return self
-
-
-class EcuSettings(Checked):
-    """The stand-in relay ECU."""
-
-    pause_s: Positive = 3.0
-    period_ms: Positive = 10.0

@@ -1,34 +1,40 @@
 """The bus as the stand-in ECU sees it: the plant's mapping, read the other way."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from hilplant.bench.description import EcuSettings
+from hilplant.bench.ecu_messages import EcuMessages
 from hilplant.bench.mapping import MappedMessage
 from hilplant.bench.timing import CYCLES_UNTIL_LOST
 from hilplant.bus.codec import MappingError, ReceivedMessage, SentMessage, Timing, received_message, sent_message
-from hilplant.signals import INPUTS, PUBLISHED
+from hilplant.signals import ECU_HEARD, ECU_SAID
 from hilplant.units import MILLISECOND_NS
 
 
 @dataclass(frozen=True, slots=True)
 class EcuSide:
-    """Messages that the ECU receives, into ``signals.PUBLISHED``, and sends, out of ``signals.INPUTS``."""
+    """Messages that the ECU receives, into ``signals.ECU_HEARD``, and sends, out of ``signals.ECU_SAID``.
+
+    `receive` come from the plant and `send` go to it; `stalk` and `status` are between the ECU and its driver.
+    """
 
     receive: tuple[ReceivedMessage, ...]
     send: tuple[SentMessage, ...]
+    stalk: tuple[ReceivedMessage, ...]
+    status: tuple[SentMessage, ...]
 
 
 def build_ecu_side(
     commands: Sequence[MappedMessage],
-    reports: Sequence[MappedMessage],
-    periods_ns: Mapping[str, int],
-    settings: EcuSettings,
+    reports: Sequence[tuple[MappedMessage, int]],
+    period_ms: float,
+    own: EcuMessages,
 ) -> EcuSide:
     """Build what the ECU sends from the plant's `commands`, and what it receives from the plant's `reports`.
 
-    `periods_ns` are those of the messages that the plant sends, by name; after ten of them one counts as lost.
-    A command that only works in the plant's direction, such as a multiplexed one, is left out unless it has a relay.
+    Beside each report is the period [ns] at which the plant sends it; after ten of them it counts as lost.
+    `period_ms` is how often the ECU decides, `own` are its messages that have nothing to do with the plant. A command
+    that only works in the plant's direction, such as a multiplexed one, is left out unless it has a relay.
 
     Raises
     ------
@@ -36,10 +42,9 @@ def build_ecu_side(
         When the command of a relay only works in the plant's direction.
 
     """
-    heard = [mapped for mapped in reports if mapped.message.name in periods_ns]
-    received = tuple(_received(mapped, periods_ns[mapped.message.name]) for mapped in heard)
-    sent = [_sent(mapped, settings) for mapped in commands if _commands_relay(mapped) or _can_be_sent(mapped)]
-    return EcuSide(received, tuple(sent))
+    received = tuple(_received(mapped, period_ns) for mapped, period_ns in reports)
+    sent = [_sent(mapped, period_ms) for mapped in commands if _commands_relay(mapped) or _can_be_sent(mapped)]
+    return EcuSide(received, tuple(sent), own.stalk, own.status)
 
 
 def _commands_relay(mapped: MappedMessage) -> bool:
@@ -48,7 +53,7 @@ def _commands_relay(mapped: MappedMessage) -> bool:
 
 def _can_be_sent(mapped: MappedMessage) -> bool:
     try:
-        sent_message(mapped.message, mapped.mappings, INPUTS, Timing(0))
+        sent_message(mapped.message, mapped.mappings, ECU_SAID, Timing(0))
     except MappingError:
         return False
     return True
@@ -56,12 +61,12 @@ def _can_be_sent(mapped: MappedMessage) -> bool:
 
 def _received(mapped: MappedMessage, period_ns: int) -> ReceivedMessage:
     timeout_ns = CYCLES_UNTIL_LOST * period_ns
-    return received_message(mapped.message, mapped.mappings, PUBLISHED, timeout_ns, mapped.protection)
+    return received_message(mapped.message, mapped.mappings, ECU_HEARD, timeout_ns, mapped.protection)
 
 
-def _sent(mapped: MappedMessage, settings: EcuSettings) -> SentMessage:
+def _sent(mapped: MappedMessage, ecu_period_ms: float) -> SentMessage:
     """Send at each change and at the database's cycle time; where it states none, in every ECU period."""
     watched = tuple(mapping.plant_signal for mapping in mapped.mappings)
-    period_ms = mapped.message.cycle_time or settings.period_ms
+    period_ms = mapped.message.cycle_time or ecu_period_ms
     timing = Timing(round(period_ms * MILLISECOND_NS), 0, watched)
-    return sent_message(mapped.message, mapped.mappings, INPUTS, timing, mapped.protection)
+    return sent_message(mapped.message, mapped.mappings, ECU_SAID, timing, mapped.protection)

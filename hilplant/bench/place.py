@@ -19,7 +19,7 @@ class Place:
         """The key under which the group stands."""
         return str(self.location[-1])
 
-    def inner(self, *keys: str) -> "Place":
+    def inner(self, *keys: str | int) -> "Place":
         """Return a place within this one."""
         return Place(self.reading, self.document, (*self.location, *keys))
 
@@ -36,6 +36,6 @@ class Place:
         document = self.reading.referred_file(self.document, self.location)
         return Place(self.reading, document, ()) if document is not None else None
 
-    def note(self, *inner: str, text: str) -> None:
+    def note(self, *inner: str | int, text: str) -> None:
         """Keep a problem at a key within this place."""
         self.reading.note(self.document, (*self.location, *inner), text)

@@ -1,92 +1,136 @@
 """The plant section of a bench, with the files it names -> the records and tables that the models run on."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hilplant.bench.description import LoadChoice, NoLoad, ParkSwitchSection, PlantSection
-from hilplant.bench.parts import LinkageFile, MotorFile
+from hilplant.bench.parts import MotorFile
 from hilplant.bench.place import Place
-from hilplant.mechanics.arms import arm, arm_points
-from hilplant.mechanics.design_points import GeometryError
-from hilplant.mechanics.linkage import SlaveDrivenLinkage, rocker_tables
-from hilplant.mechanics.newton_raphson import SolutionError
+from hilplant.bench.plant_description import (
+    AnyLoad,
+    BladeEntry,
+    BladesSection,
+    LoadChoice,
+    ParkSwitchSection,
+    PlantSection,
+    PolynomialLoad,
+    ReducedLoad,
+)
+from hilplant.bench.screen_parts import ScreenFile
+from hilplant.bench.wiper import SIDES, Mechanics, Surroundings, read_mechanics
+from hilplant.failure import Failure
+from hilplant.mechanics.coefficients import Aerodynamics, check_aerodynamics
+from hilplant.models.circuit import CIRCUITS
 from hilplant.models.load import LOADS
-from hilplant.models.records import Arm, Load, Motor, Parameters, ParkSwitch
+from hilplant.models.records import Blade, Friction, Load, Parameters, ParkSwitch
 from hilplant.units import MILLISECOND_NS, RAD_PER_DEG, SECOND_NS
 
-Built = TypeVar("Built")
+Blades = tuple[BladeEntry, BladeEntry]
 
 
 @dataclass(frozen=True, slots=True)
 class Plant:
-    """Parameters and tables of one plant."""
+    """Parameters and tables of one plant, the descriptions they come from, and the mechanics behind the tables."""
 
     parameters: Parameters
     tables: NDArray[np.float64]
+    motor: MotorFile
+    load: AnyLoad
+    screen: ScreenFile | None
+    blades: Blades | None
+    mechanics: Mechanics
 
 
 def assemble_plant(place: Place, step_ns: int) -> Plant | None:
     """Build the plant; a part that is wrong is noted, and the others are checked all the same."""
     place.take(PlantSection)
     motor = _motor(place.inner("motor"))
-    linkage = _linkage(place.inner("linkage"))
     load = _load(place)
+    screen, blades = _screen(place.inner("screen")), _blades(place.inner("blades"))
     park_switch = _park_switch(place.inner("park_switch"), step_ns)
-    if motor is None or linkage is None or load is None or park_switch is None:
+    complete = not isinstance(load, ReducedLoad) or _has_screen_and_blades(place)
+    mechanics = read_mechanics(place.inner("linkage"), _surroundings(place, load, screen, blades))
+    if motor is None or mechanics is None or load is None or park_switch is None or not complete:
         return None
-    tables, left_arm, right_arm = linkage
-    return Plant(Parameters(step_ns / SECOND_NS, motor, park_switch, load, left_arm, right_arm), tables)
+    record = _load_record(load, screen, blades)
+    left, right = mechanics.wiper.left.arm, mechanics.wiper.right.arm
+    parameters = Parameters(step_ns / SECOND_NS, motor.record(), park_switch, record, left, right)
+    return Plant(parameters, mechanics.table, motor, load, screen, blades, mechanics)
 
 
-def _motor(place: Place) -> Motor | None:
+def _motor(place: Place) -> MotorFile | None:
     file = place.referred_file()
-    description = file.take(MotorFile) if file is not None else None
-    return description.record() if description is not None else None
+    return file.take(MotorFile) if file is not None else None
 
 
-def _linkage(place: Place) -> tuple[NDArray[np.float64], Arm, Arm] | None:
-    """Return the rockers' tables and both arms, all from one file."""
+def _screen(place: Place) -> ScreenFile | None:
     file = place.referred_file()
-    description = file.take(LinkageFile) if file is not None else None
-    if file is None or description is None:
+    return file.take(ScreenFile) if file is not None else None
+
+
+def _blades(place: Place) -> Blades | None:
+    if not isinstance(place.data(), dict) or place.take(BladesSection) is None:
         return None
-    tables = _attempt(file.inner("points_m"), lambda: _tables(description))
-    points = [
-        _attempt(file.inner(side, "points_m"), partial(arm_points, section.kind, section.points_m))
-        for side, section in (("left_arm", description.left_arm), ("right_arm", description.right_arm))
-    ]
-    if tables is None or points[0] is None or points[1] is None:
+    left, right = (_blade(place.inner(side)) for side in SIDES)
+    return (left, right) if left is not None and right is not None else None
+
+
+def _blade(place: Place) -> BladeEntry | None:
+    entry = place.take(BladeEntry)
+    if entry is None:
         return None
-    return tables, arm(points[0], tables[0, 0, 0]), arm(points[1], tables[1, 0, 0])
-
-
-def _tables(description: LinkageFile) -> NDArray[np.float64]:
-    return rocker_tables(SlaveDrivenLinkage.from_points(description.points_m))
-
-
-def _attempt(place: Place, build: Callable[[], Built]) -> Built | None:
     try:
-        return build()
-    except (GeometryError, SolutionError) as error:
+        check_aerodynamics(f"{place.name} blade", _air(entry))
+    except Failure as error:
         place.note(text=str(error))
         return None
+    return entry
 
 
-def _load(plant: Place) -> Load | None:
+def _air(entry: BladeEntry) -> Aerodynamics:
+    return Aerodynamics(entry.area_m2, entry.drag, entry.lift)
+
+
+def _load(plant: Place) -> AnyLoad | None:
     data = plant.inner("load").data()
     if not isinstance(data, dict):
         return None
     choice = plant.reading.check(plant.document, plant.location, {"load": data}, LoadChoice)
-    if choice is None:
-        return None
-    load = choice.load
-    model = float(LOADS.index(load.model))
-    return Load(model, 0.0, 0.0) if isinstance(load, NoLoad) else Load(model, load.c1, load.c2)
+    return choice.load if choice is not None else None
+
+
+def _has_screen_and_blades(plant: Place) -> bool:
+    missing = [key for key in ("screen", "blades") if plant.inner(key).data() is None]
+    for key in missing:
+        written = (*plant.location, key) in plant.document.places
+        plant.note(key if written else "load", text=f"the reduced load needs {key} beside it")
+    return not missing
+
+
+def _surroundings(plant: Place, load: AnyLoad | None, screen: ScreenFile | None, blades: Blades | None) -> Surroundings:
+    """Return what is known; what is missing is noted, and the linkage is checked all the same."""
+    left, right = (_air(entry) for entry in blades) if blades is not None else (Aerodynamics(), Aerodynamics())
+    return Surroundings(
+        blades=plant.inner("blades"),
+        screen_angle_rad=screen.angle_rad if screen is not None else 0.0,
+        air=(left, right),
+        points=load.points if isinstance(load, ReducedLoad) else 1,
+        needs_masses=isinstance(load, ReducedLoad),
+    )
+
+
+def _load_record(load: AnyLoad, screen: ScreenFile | None, blades: Blades | None) -> Load:
+    left, right = (Blade(entry.force_n, entry.wear) for entry in blades) if blades is not None else (Blade(), Blade())
+    return Load(
+        float(LOADS.index(load.model)),
+        c1=load.c1 if isinstance(load, PolynomialLoad) else 0.0,
+        c2=load.c2 if isinstance(load, PolynomialLoad) else 0.0,
+        points=float(load.points) if isinstance(load, ReducedLoad) else 1.0,
+        friction=screen.friction() if screen is not None else Friction(),
+        left_blade=left,
+        right_blade=right,
+    )
 
 
 def _park_switch(place: Place, step_ns: int) -> ParkSwitch | None:
@@ -100,4 +144,6 @@ def _park_switch(place: Place, step_ns: int) -> ParkSwitch | None:
         0.5 * section.window_deg * RAD_PER_DEG,
         section.hysteresis_deg * RAD_PER_DEG,
         float(round(section.bounce_ms * MILLISECOND_NS / step_ns)),
+        float(CIRCUITS.index(section.circuit)),
+        (section.reverse_angle_deg or 0.0) * RAD_PER_DEG,
     )

@@ -1,12 +1,13 @@
 """When messages come and go: from the bench where it says so, else from the cycle times of the database."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from hilplant.bench.description import ReceiveEntry, SendEntry
 from hilplant.bench.place import Place
 from hilplant.bench.problems import suggestion
 from hilplant.bus.codec import Timing
-from hilplant.signals import PUBLISHED_INDEX
+from hilplant.signals import PUBLISHED, Signal
 from hilplant.units import MILLISECOND_NS
 
 #: A message that is supervised may stay away for so many cycle times, when nothing else is said.
@@ -29,8 +30,10 @@ def timeout_ns(place: Place, message: Any, entry: ReceiveEntry) -> int:
     return round(timeout_ms * MILLISECOND_NS)
 
 
-def sending(place: Place, message: Any, entry: SendEntry, step_ns: int) -> Timing:
-    """Return when a message is sent."""
+def sending(
+    place: Place, message: Any, entry: SendEntry, step_ns: int, signals: Sequence[Signal] = PUBLISHED
+) -> Timing:
+    """Return when a message of some of these signals is sent."""
     period_ms = float(message.cycle_time or 0) if entry.period_ms is None else entry.period_ms
     period_ns = round(period_ms * MILLISECOND_NS)
     if not period_ns and not entry.on_change:
@@ -42,12 +45,13 @@ def sending(place: Place, message: Any, entry: SendEntry, step_ns: int) -> Timin
     if period_ns and entry.offset_ms >= period_ms:
         text = f"offset_ms must be below the period of {period_ms:g} ms, not {entry.offset_ms:g}"
         place.note("offset_ms", text=text)
-    return Timing(period_ns, round(entry.offset_ms * MILLISECOND_NS), _watched(place, entry))
+    watched = _watched(place, entry, [signal.name for signal in signals])
+    return Timing(period_ns, round(entry.offset_ms * MILLISECOND_NS), watched)
 
 
-def _watched(place: Place, entry: SendEntry) -> tuple[str, ...]:
+def _watched(place: Place, entry: SendEntry, known: Sequence[str]) -> tuple[str, ...]:
     for name in entry.on_change:
-        if name not in PUBLISHED_INDEX:
-            text = f"the plant has no signal '{name}' here{suggestion(name, PUBLISHED_INDEX)}"
+        if name not in known:
+            text = f"the plant has no signal '{name}' here{suggestion(name, known)}"
             place.note("on_change", text=text)
-    return tuple(name for name in entry.on_change if name in PUBLISHED_INDEX)
+    return tuple(name for name in entry.on_change if name in known)

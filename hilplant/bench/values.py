@@ -1,4 +1,4 @@
-"""Values of signals as people write them: `true` for a flag, a name for a choice, a number in its range."""
+"""Values of signals as people write them: `true` for a flag, a name for a choice, a number in its range or its name."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -19,6 +19,8 @@ def signal_value(signal: Signal, written: Any) -> float:
     """
     if signal.kind == "choice" and isinstance(written, str):
         return _choice(signal, written)
+    if signal.names and isinstance(written, str):
+        return _named(signal, written)
     if signal.kind == "flag" and isinstance(written, bool):
         return float(written)
     if isinstance(written, bool) or not isinstance(written, int | float) or signal.kind in ("flag", "choice"):
@@ -53,13 +55,23 @@ def _choice(signal: Signal, written: str) -> float:
     return float(signal.choices.index(written))
 
 
+def _named(signal: Signal, written: str) -> float:
+    values = dict(signal.names)
+    if written not in values:
+        near = suggestion(written, values)
+        question = near if near.endswith("?") else ""
+        raise ValueError(f"{signal.name} must be {_wanted(signal)}, not {_shown(written)}{question}")
+    return values[written]
+
+
 def _wanted(signal: Signal) -> str:
     if signal.kind == "flag":
         return "true or false"
     if signal.kind == "choice":
         return f"one of {', '.join(signal.choices)}"
     unit = f" {signal.unit}" if signal.unit else ""
-    return f"a number from {signal.minimum:g} to {signal.maximum:g}{unit}"
+    names = f" or one of {', '.join(name for name, _ in signal.names)}" if signal.names else ""
+    return f"a number from {signal.minimum:g} to {signal.maximum:g}{unit}{names}"
 
 
 def _shown(written: Any) -> str:

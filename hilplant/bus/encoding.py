@@ -86,10 +86,8 @@ def _limited(names: dict[str, Any], links: Sequence[Link], raws: Sequence[str]) 
 
 def _limit(link: Link) -> Callable[..., tuple[float, int]]:
     lowest, highest = raw_range(link.database)
-    rest = min(max(lowest, 0), highest)
-    if link.table:
-        raws = _inverted(link.table)
-        rest = raws[min(raws)]
+    raws = _inverted(link.table or {})
+    rest = raws[min(raws)] if raws else min(max(lowest, 0), highest)
     counts = int(link.plant.kind != "count")
     rises = link.scale * link.database.scale > 0.0
 
@@ -98,8 +96,10 @@ def _limit(link: Link) -> Callable[..., tuple[float, int]]:
         try:
             wanted = raw(values)
         except (ValueError, OverflowError, KeyError):  # not a number, infinite, or not a choice
-            if link.table or math.isnan(value):
+            if math.isnan(value) or (link.table and link.plant.kind != "real"):
                 return rest, counts
+            if link.table:  # a number between those that have labels
+                return raws[min(raws, key=lambda known: abs(known - value))], counts
             return (highest if (value > 0.0) == rises else lowest), counts
         if link.table or lowest <= wanted <= highest:
             return wanted, 0

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 #: Names of a flag's two values that a choice may be mapped to.
 FLAG_LABELS = {"off": 0.0, "false": 0.0, "0": 0.0, "on": 1.0, "true": 1.0, "1": 1.0}
 
-#: What a raw value that no choice stands for becomes: below the range of every flag and choice.
-NO_CHOICE = -1.0
+#: What a raw value that no choice stands for becomes: below the range of every signal that choices may lead to.
+NO_CHOICE = -2.0
 
 
 class MappingError(Failure):
@@ -37,7 +37,7 @@ class SignalMapping:
     """One line of a mapping: plant value = database's physical value * scale + offset, in both directions.
 
     `choices` leads from the labels of the database's value table to those of the plant's choice (of a flag:
-    off, on). `invert` swaps 0 and 1 of a flag.
+    off, on; of a number that has names: those). `invert` swaps 0 and 1 of a flag.
     """
 
     database_signal: str
@@ -127,13 +127,11 @@ def _line(mapping: SignalMapping, plant: Signal) -> tuple[float, float]:
 def _table(database: DatabaseSignal, plant: Signal, mapping: SignalMapping) -> dict[int, float] | None:
     """Return the plant's value for each raw value; None where numbers are mapped by their value."""
     labels = {str(label): int(raw) for raw, label in (database.choices or {}).items()}
-    if mapping.choices is None:
-        if plant.kind != "choice" or not labels:
-            return None
-        lower = {label.lower(): label for label in labels}
-        chosen = {lower[name]: name for name in plant.choices if name in lower}
-    else:
-        chosen = dict(mapping.choices)
+    chosen = _same_labels(database, plant, mapping) if mapping.choices is None else dict(mapping.choices)
+    if mapping.choices is None and not chosen and (plant.kind != "choice" or not labels):
+        return None
+    if mapping.choices == {}:
+        raise ValueError("choices must name at least one label; leave them out to map numbers")
     if (mapping.scale, mapping.offset) != (1.0, 0.0):
         raise ValueError("choices take no scale and no offset")
     if database.is_float:
@@ -146,12 +144,29 @@ def _table(database: DatabaseSignal, plant: Signal, mapping: SignalMapping) -> d
     return {raw: 1.0 - value for raw, value in table.items()} if mapping.invert else table
 
 
+def _same_labels(database: DatabaseSignal, plant: Signal, mapping: SignalMapping) -> dict[str, str]:
+    """Return which labels of the database are those of the plant, whatever their case, where no choices are given.
+
+    A number with names is taken by its value as long as the labels agree with the values, and where it is scaled.
+    """
+    labels = {str(label).lower(): str(label) for label in (database.choices or {}).values()}
+    if plant.kind == "choice":
+        return {labels[name]: name for name in plant.choices if name in labels}
+    scaled = (mapping.scale, mapping.offset) != (1.0, 0.0)
+    known = {} if scaled else {labels[name]: value for name, value in plant.names if name in labels}
+    raws = {str(label): int(raw) for raw, label in (database.choices or {}).items()}
+    agree = all(raws[label] * database.scale + database.offset == value for label, value in known.items())
+    return {} if agree else {label: label.lower() for label in known}
+
+
 def _plant_values(plant: Signal) -> dict[str, float]:
     if plant.kind == "flag":
         return FLAG_LABELS
     if plant.kind == "choice":
         return {name: float(index) for index, name in enumerate(plant.choices)}
-    raise ValueError(f"choices are for a flag or a choice, and {plant.name} is a {plant.kind}")
+    if plant.names:
+        return dict(plant.names)
+    raise ValueError(f"choices are for a flag, a choice or a number with names, and {plant.name} is a {plant.kind}")
 
 
 def _raw(labels: dict[str, int], label: str) -> int:

@@ -14,6 +14,7 @@ class Incoming:
         self.checker = Checker(message.protection) if message.protection else None
         self.valid_ns: int | None = None
         self.late = False
+        self.is_missing = True  # as last judged
 
     def is_lost(self, now_ns: int) -> bool:
         """Whether no valid frame has come within the timeout."""

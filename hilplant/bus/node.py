@@ -23,12 +23,16 @@ _CENSUS_EVERY_NS = 100 * MILLISECOND_NS
 
 @dataclass(frozen=True, slots=True)
 class LinkSettings:
-    """How a node treats its interface."""
+    """How a node treats its interface.
+
+    `others` are the identifiers, with whether they are extended, of messages that are known to pass between others.
+    """
 
     frames_per_tick: int = 100
     queue_frames: int = 64
     reopen_first_ns: int = 100 * MILLISECOND_NS
     reopen_longest_ns: int = 2000 * MILLISECOND_NS
+    others: frozenset[tuple[int, bool]] = frozenset()
 
 
 class Node:
@@ -94,6 +98,10 @@ class Node:
         self._pending.extend([self._build(outgoing, values) for outgoing in self._outgoing])
         self._flush()
 
+    def silent(self, target: int) -> bool:
+        """Whether the message that sets a value has not come within its timeout; one that nobody supervises is not."""
+        return any(target in incoming.message.targets for incoming in self._supervised if incoming.is_missing)
+
     def rehearse(self, values: Sequence[float]) -> None:
         """Encode and decode every message once, without any effect, so that the first tick meets no cold code."""
         for outgoing in self._outgoing:
@@ -112,7 +120,7 @@ class Node:
             return "error_frame" if error else "remote_frame"
         incoming = self._incoming.get((identifier, extended))
         if incoming is None:
-            return "unknown_frame"
+            return None if (identifier, extended) in self._settings.others else "unknown_frame"
         message = incoming.message
         if fd != message.fd or len(data) != message.length:
             return "wrong_length" if fd == message.fd else "fd_frame"
@@ -138,7 +146,8 @@ class Node:
     def _supervise(self, now_ns: int) -> None:
         lost = waiting = False
         for incoming in self._supervised:
-            if not incoming.is_lost(now_ns):
+            incoming.is_missing = incoming.is_lost(now_ns)
+            if not incoming.is_missing:
                 continue
             lost = True
             if incoming.valid_ns is None:

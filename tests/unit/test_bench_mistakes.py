@@ -8,7 +8,6 @@ from hilplant.bench import BenchError, check_bench, load_bench
 from hilplant.failure import Failure
 from hilplant.resources import shipped
 
-LINKAGE = shipped("config", "linkages", "rhd_slave_driven.yaml").read_text()
 DATABASE = shipped("dbc", "wiper.dbc").read_text()
 
 
@@ -65,7 +64,7 @@ def test_a_bench_that_only_extends_the_default_one_is_sound(tmp_path: Path) -> N
         ("loop: {reopen_ms: [1, 2, 3]}", "3: reopen_ms must have at most 2 entries, not 3"),
         ("loop: {reopen_ms: [1.5, 2]}", "3: entry 1 of reopen_ms must be a whole number, not 1.5"),
         ("loop: {reopen_ms: [2000, 100]}", "3: reopen_ms must be [first pause, longest pause], rising"),
-        ("ecu: {pause_s: -1}", "3: pause_s must be greater than 0, not -1"),
+        ("ecu: {period_ms: -1}", "3: period_ms must be greater than 0, not -1"),
     ],
 )
 def test_a_mistake_in_a_section_is_told_at_its_line(tmp_path: Path, text: str, message: str) -> None:
@@ -144,24 +143,6 @@ def test_a_database_that_is_broken_is_told_at_its_own_line(tmp_path: Path) -> No
 def test_a_database_in_no_known_format_is_told_where_it_is_named(tmp_path: Path) -> None:
     (tmp_path / "own.txt").write_text("x")
     assert the_mistake(tmp_path, "bus: {database: own.txt}\n").startswith("bench.yaml:3: ")
-
-
-@pytest.mark.parametrize(
-    ("right", "wrong", "line"),
-    [
-        ("A: [0.0445, 0.0055, 0.0]", "A: [0.2, 0.0055, 0.0]", "points_m: #"),
-        ("F: [0.2030, 0.0270, 0.0]", "F: [0.2030]", "F: ["),
-        ("kind: bent", "kind: straight", "    O: [0.0, 0.0, 0.0]\n    A: [-0.3000"),
-        ("kind: slave_driven", "kind: centre_driven", "kind: slave"),
-    ],
-)
-def test_a_linkage_that_cannot_work_is_told_in_its_own_file(tmp_path: Path, right: str, wrong: str, line: str) -> None:
-    assert right in LINKAGE
-    (tmp_path / "own.yaml").write_text(LINKAGE.replace(right, wrong))
-    number = LINKAGE[: LINKAGE.index(line)].count("\n") + 1
-    number -= line.startswith("    O")  # the arm's points are one group, told at its head
-    found = the_mistake(tmp_path, "plant: {linkage: own.yaml}\n")
-    assert found.startswith(f"own.yaml:{number}: ")
 
 
 @pytest.mark.parametrize("text", ["a: [", "a: 1\na: 2\n", "", "- 1"])

@@ -1,10 +1,14 @@
 """Messages of the project's database and of unsound ones, in both directions."""
 
 import math
+from collections import OrderedDict
 from pathlib import Path
 from typing import Any
 
 import pytest
+from cantools.database.can.message import Message
+from cantools.database.can.signal import Signal as DatabaseSignal
+from cantools.database.conversion import BaseConversion
 
 from hilplant.bus.codec import (
     MappingError,
@@ -62,7 +66,7 @@ def test_the_relay_command_of_the_readme_means_what_it_says(payload: str, relays
 def test_choices_with_equal_names_need_no_mapping_and_others_get_one() -> None:
     by_name = received("Environment", SignalMapping("Screen", "screen"))
     swapped = received("Environment", SignalMapping("Screen", "screen", choices={"Dry": "wet", "Wet": "dry"}))
-    assert [by_name.decode(bytes([raw, 0, 0])) for raw in (0, 1)] == [(0.0,), (1.0,)]
+    assert [by_name.decode(bytes([raw, 0, 0])) for raw in (0, 1, 2)] == [(0.0,), (1.0,), (0.5,)]
     assert [swapped.decode(bytes([raw, 0, 0])) for raw in (0, 1)] == [(1.0,), (0.0,)]
 
 
@@ -72,6 +76,35 @@ def test_a_raw_value_without_a_choice_is_out_of_range_not_an_error() -> None:
     (value,) = message.decode(bytes([3, 0, 0]))
     assert value is not None
     assert value < lowest
+
+
+def test_a_number_with_names_is_taken_by_its_value_where_it_is_scaled_or_the_labels_agree() -> None:
+    """Raw 1 of a wetness in halves is tacky, though the same raw 1 is labelled Wet."""
+    halves = received("Environment", SignalMapping("Screen", "screen", scale=0.5))
+    assert [halves.decode(bytes([raw, 0, 0])) for raw in (0, 1, 2)] == [(0.0,), (0.5,), (1.0,)]
+    percent = BaseConversion.factory(0.01, 0, OrderedDict({0: "Dry", 50: "Tacky", 100: "Wet"}), False)
+    message = Message(1, "Rain", 1, [DatabaseSignal("Wetness", 0, 8, conversion=percent)])
+    agreeing = received_message(message, [SignalMapping("Wetness", "screen")], INPUTS)
+    assert [agreeing.decode(bytes([raw])) for raw in (0, 30, 100)] == [(0.0,), (0.3,), (1.0,)]
+
+
+def test_a_label_may_say_same_and_a_raw_value_without_a_label_does_not() -> None:
+    conversion = BaseConversion.factory(1, 0, OrderedDict({0: "Off", 1: "Wet"}), False)
+    message = Message(1, "Side", 1, [DatabaseSignal("Left", 0, 8, conversion=conversion)])
+    mapping = SignalMapping("Left", "left_screen", choices={"Off": "same", "Wet": "wet"})
+    made = received_message(message, [mapping], INPUTS)
+    ((lowest, _),) = made.limits
+    assert [made.decode(bytes([raw])) for raw in (0, 1)] == [(-1.0,), (1.0,)]
+    (value,) = made.decode(bytes([7]))
+    assert value is not None and value < lowest
+
+
+@pytest.mark.parametrize(("value", "raw", "limited"), [(0.5, 2, 0), (1.0, 1, 0), (0.1, 0, 1), (0.9, 1, 1)])
+def test_a_number_without_a_label_is_sent_as_the_nearest_that_has_one(value: float, raw: int, limited: int) -> None:
+    message = sent_message(WIPER.get_message_by_name("Environment"), [SignalMapping("Screen", "screen")], INPUTS)
+    inputs = [0.0] * len(INPUTS)
+    inputs[INPUT_INDEX["screen"]] = value
+    assert message.encode(inputs) == (bytes([raw, 0, 0]), limited)
 
 
 def test_scale_and_offset_lead_to_the_plants_unit() -> None:
@@ -103,7 +136,7 @@ def test_values_beyond_the_frame_are_limited_and_counted() -> None:
     assert limited == 3
     decoded = decoded_by_cantools("MotorStatus", payload)
     assert decoded["MotorCurrent"] == pytest.approx(327.67)
-    assert (decoded["MotorSpeed"], decoded["TerminalVoltage"]) == (0, 0)
+    assert (decoded["MotorSpeed"], decoded["TerminalVoltage"]) == (0, -40.0)
 
 
 def test_one_value_beyond_the_frame_leaves_the_others_as_they_are() -> None:

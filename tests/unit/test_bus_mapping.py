@@ -52,8 +52,18 @@ def test_a_mapping_error_is_a_failure_that_names_message_and_signal() -> None:
         ("RelayCommand", [Map("RelayOn", "relay_on", choices={"On": "on"})], "cannot carry 0 of relay_on"),
         ("RelayCommand", [Map("RelayOn", "relay_on"), Map("RelayFast", "relay_on")], "written by two mappings"),
         ("RelayCommand", [], "no signal is mapped"),
-        ("Environment", [Map("Screen", "screen", choices={"Dry": "dry"})], "stands for wet of screen"),
-        ("Environment", [Map("Screen", "screen", offset=1.0)], "choices take no scale and no offset"),
+        (
+            "Environment",
+            [Map("Screen", "screen", choices={"Dry": "moist"})],
+            "no choice 'moist'; it has dry, tacky, wet",
+        ),
+        ("Environment", [Map("Screen", "screen", choices={})], "choices must name at least one label"),
+        (
+            "Environment",
+            [Map("Screen", "screen", offset=1.0, choices={"Dry": "dry"})],
+            "choices take no scale and no offset",
+        ),
+        ("Environment", [Map("Screen", "screen", offset=5.0)], "5 to 7, never within screen's 0 to 1"),
         ("Environment", [Map("VehicleSpeed", "relay_on")], "relay_on is a flag, so whole numbers must arrive"),
         ("SupplyCommand", [Map("SupplyVoltage", "supply_v", offset=1000.0)], "1000 to 1040 V, never within supply_v"),
     ],
@@ -119,4 +129,4 @@ def test_a_float_cannot_carry_choices() -> None:
     conversion = BaseConversion.factory(1, 0, OrderedDict({0: "Dry", 1: "Wet"}), True)
     message = Message(1, "Odd", 4, [DatabaseSignal("Screen", 0, 32, conversion=conversion)])
     with pytest.raises(MappingError, match="a float cannot carry choices"):
-        received_message(message, [Map("Screen", "screen")], INPUTS)
+        received_message(message, [Map("Screen", "screen", choices={"Dry": "dry"})], INPUTS)

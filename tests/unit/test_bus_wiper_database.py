@@ -8,20 +8,24 @@ from cantools.database.can import Database
 from cantools.database.can.message import Message
 from cantools.database.can.signal import Signal
 
-from hilplant.signals import MODES, SCREENS, STATUS
+from hilplant.signals import ECU_FAULTS, ECU_STATES, MODES, SCREENS, STALK_POSITIONS, STATUS
 
 ROOT = Path(__file__).parents[2]
 WIPER = Database(strict=True)
 WIPER.add_dbc_file(str(ROOT / "dbc" / "wiper.dbc"))
 # sent at changes too, so that nothing waits for its cycle
-AT_ONCE = ("MotorStatus", "ParkSwitch", "PlantStatus", "LossFaults")
+AT_ONCE = ("EcuStatus", "MotorStatus", "ParkSwitch", "PlantStatus", "LossFaults")
+# the ECU speaks to the plant, and of itself to the driver
+DRIVERS = ("StalkCommand", "EcuStatus")
 MESSAGES = pytest.mark.parametrize("message", WIPER.messages, ids=lambda message: message.name)
 
 
 @MESSAGES
 def test_every_message_says_who_sends_it_how_often_and_what_it_is(message: Message) -> None:
-    assert message.senders in (["ECU"], ["PLANT"])
-    assert message.receivers == {"ECU", "PLANT"} - set(message.senders)
+    (sender,) = message.senders
+    ends = {"ECU", "DRIVER"} if message.name in DRIVERS else {"ECU", "PLANT"}
+    assert sender in ends
+    assert message.receivers == ends - {sender}
     assert message.cycle_time
     assert message.send_type == ("CyclicAndEvent" if message.name in AT_ONCE else "Cyclic")
     assert message.comment
@@ -35,7 +39,8 @@ def test_every_signal_says_what_it_is_and_what_it_can_be(message: Message) -> No
         assert signal.minimum is not None
         assert signal.maximum is not None
         assert signal.byte_order == "little_endian"
-        assert signal.unit or signal.choices or float(signal.scale) == 1.0
+        is_factor = signal.name.endswith(("Screen", "Wear", "Force")) and message.name == "Blades"
+        assert signal.unit or signal.choices or is_factor or float(signal.scale) == 1.0
         for physical in (signal.minimum, signal.maximum):
             raw = signal.conversion.numeric_scaled_to_raw(physical)
             lowest = -(1 << signal.length - 1) if signal.is_signed else 0
@@ -50,8 +55,12 @@ def test_value_tables_hold_the_plants_own_names() -> None:
         if signal.choices
     }
     assert tables["Mode"] == dict(enumerate(MODES))
-    assert tables["Screen"] == dict(enumerate(SCREENS))
-    assert set(tables) == {"Mode", "Screen", "RelayOn", "RelayFast", "ParkContact", "Guard"}
+    assert set(tables["Screen"].values()) == {name for name, _ in SCREENS}
+    assert tables["Master_Input"] == dict(enumerate(STALK_POSITIONS))
+    assert tables["EcuState"] == dict(enumerate(ECU_STATES))
+    assert tables["EcuFault"] == dict(enumerate(ECU_FAULTS))
+    from_plant = {"Mode", "Screen", "RelayOn", "RelayFast", "ParkContact", "Guard"}
+    assert set(tables) == from_plant | {"Master_Input", "Flick_Wipe", "Wash", "EcuState", "EcuFault"}
 
 
 def test_every_count_of_the_status_has_a_signal() -> None:
@@ -81,4 +90,6 @@ def _bits(signal: Signal) -> str:
 def _unit(signal: Signal) -> str:
     if signal.choices:
         return ", ".join(f"{raw} {label}" for raw, label in sorted(signal.choices.items()))
-    return f"{signal.scale:g} {signal.unit}".strip() if signal.unit else "count"
+    if not signal.unit and float(signal.scale) == 1.0:
+        return "count"
+    return f"{signal.scale:g} {signal.unit or ''}".strip()

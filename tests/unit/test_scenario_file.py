@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from hilplant.bench.problems import BenchError
+from hilplant.failure import Failure
 from hilplant.scenario import Scenario, load_scenario
 from hilplant.signals import INPUT_INDEX, INPUTS
 
@@ -69,6 +70,23 @@ def test_choices_go_by_name_and_the_initial_state_is_kept(tmp_path: Path) -> Non
     assert scenario.initial == {"crank_angle_rad": 1.5}
 
 
+def test_a_number_with_names_goes_by_name_or_number_and_follows_a_ramp(tmp_path: Path) -> None:
+    text = "seconds: 0.006\nsignals:\n  screen: [[0, dry], [0.001, {ramp_to: wet, seconds: 0.004}], [0.005, 0.3]]\n"
+    assert column(written(tmp_path, text), "screen").tolist() == [0, 0, 0.25, 0.5, 0.75, 0.3]
+    text = "seconds: 0.002\nsignals:\n  left_screen: [[0.001, tacky]]\n  right_screen: [[0, wet], [0.001, same]]\n"
+    scenario = written(tmp_path, text)
+    assert column(scenario, "left_screen").tolist() == [-1, 0.5]
+    assert column(scenario, "right_screen").tolist() == [1, -1]
+
+
+def test_no_ramp_begins_where_a_signal_takes_the_value_of_another(tmp_path: Path) -> None:
+    text = "seconds: 1\nsignals:\n  left_screen: [[0.5, {ramp_to: wet, seconds: 0.1}]]\n"
+    scenario = written(tmp_path, text)
+    with pytest.raises(Failure, match=r"left_screen is 'same' when its ramp at 0\.5 s begins; give it a value before"):
+        scenario.input_rows(DEFAULTS, STEP_NS)
+    assert column(written(tmp_path, text.replace("[[0.5,", "[[0, dry], [0.5,")), "left_screen")[-1] == 1.0
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -98,7 +116,15 @@ def test_choices_go_by_name_and_the_initial_state_is_kept(tmp_path: Path) -> Non
         ),
         (
             "seconds: 1\nsignals:\n  screen: [[0, wett]]",
-            "3: screen has no choice 'wett', did you mean 'wet'?",
+            "3: screen must be a number from 0 to 1 or one of dry, tacky, wet, not 'wett', did you mean 'wet'?",
+        ),
+        (
+            "seconds: 1\nsignals:\n  screen: [[0, same]]",
+            "3: screen must be a number from 0 to 1 or one of dry, tacky, wet, not 'same'",
+        ),
+        (
+            "seconds: 1\nsignals:\n  left_screen: [[0, wet], [0.5, {ramp_to: same, seconds: 0.1}]]",
+            "3: left_screen cannot ramp to 'same'; ramp to a number from 0 on, then say 'same'",
         ),
         (
             "seconds: 1\nsignals:\n  screen:\n    - [0, wet]\n    - [0, dry]",

@@ -1,0 +1,120 @@
+"""What the plant section of a bench may say."""
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, field_validator, model_validator
+
+from hilplant.bench.checked import Checked, Name, NotNegative, wrong
+from hilplant.bench.parts import WithAssumptions
+
+Group = dict[str, Any]
+Angle = Annotated[float, Field(gt=0, lt=360)]
+
+
+class PlantSection(Checked):
+    """What stands on the bench."""
+
+    motor: Name
+    linkage: Name
+    screen: Name | None = None
+    blades: Group | None = None
+    load: Group
+    park_switch: Group
+
+
+class NoLoad(Checked):
+    """Nothing but the linkage, without weight."""
+
+    model: Literal["none"]
+
+
+class PolynomialLoad(Checked):
+    """No-load torque fitted over angle and speed, (6.1)-(6.3)."""
+
+    model: Literal["polynomial"]
+    c1: NotNegative
+    c2: NotNegative
+
+
+class ReducedLoad(Checked):
+    """The whole wiper, reduced to the crank; friction acts at `points` points of each blade."""
+
+    model: Literal["reduced"]
+    points: Annotated[int, Field(ge=1, le=64)] = 1
+
+
+AnyLoad = NoLoad | PolynomialLoad | ReducedLoad
+
+
+class LoadChoice(Checked):
+    """The load, chosen by the name of its model."""
+
+    load: Annotated[AnyLoad, Field(discriminator="model")]
+
+
+class BladesSection(Checked):
+    """Both blades on their screen."""
+
+    left: Group
+    right: Group
+
+
+class BladeEntry(WithAssumptions):
+    """One blade on its screen: force of its arm, factor on its friction, and what the air does to it.
+
+    Drag and lift are coefficients of (4.51), (4.52), each a number or pairs of arm angle [deg] and number.
+    """
+
+    force_n: NotNegative
+    wear: NotNegative = 1.0
+    area_m2: NotNegative = 0.0
+    drag: Any = 0.0
+    lift: Any = 0.0
+
+    @field_validator("drag", "lift", mode="before")
+    @classmethod
+    def _number_or_pairs(cls, written: Any) -> Any:
+        """Refuse what is neither; what a table must fulfil is checked where it is used."""
+        if _is_number(written):
+            return float(written)
+        if not isinstance(written, list) or not all(map(_is_pair, written)):
+            raise wrong(text="drag and lift are each a number, or a list of pairs [arm angle in deg, number]")
+        return tuple((float(angle), float(number)) for angle, number in written)
+
+
+def _is_number(written: Any) -> bool:
+    return isinstance(written, int | float) and not isinstance(written, bool)
+
+
+def _is_pair(written: Any) -> bool:
+    return isinstance(written, list) and len(written) == 2 and all(map(_is_number, written))
+
+
+class ParkSwitchSection(Checked):
+    """Contact over the crank angle, and the circuit that it is part of."""
+
+    park_angle_deg: Annotated[float, Field(ge=0, lt=360)]
+    window_deg: Angle
+    hysteresis_deg: NotNegative = 0.0
+    bounce_ms: NotNegative = 0.0
+    circuit: Literal["digital", "mechanical", "depressed"] = "digital"
+    reverse_angle_deg: Angle | None = None
+
+    @model_validator(mode="after")
+    def _window_within_turn(self) -> Self:
+        if self.window_deg + 2.0 * self.hysteresis_deg >= 360.0:
+            text = "hysteresis_deg must leave a gap: window_deg + 2 hysteresis_deg must be below 360"
+            raise wrong("hysteresis_deg", text=text)
+        return self
+
+    @model_validator(mode="after")
+    def _turns_back_only_when_depressed(self) -> Self:
+        if self.circuit == "depressed" and self.reverse_angle_deg is None:
+            raise wrong("circuit", text="the depressed circuit needs reverse_angle_deg, how far it turns back to park")
+        if self.circuit != "depressed" and self.reverse_angle_deg is not None:
+            text = f"reverse_angle_deg is for the depressed circuit, and this one is {self.circuit}"
+            raise wrong("reverse_angle_deg", text=text)
+        if self.window_deg + (self.reverse_angle_deg or 0.0) >= 360.0:
+            text = "reverse_angle_deg must leave a gap: window_deg + reverse_angle_deg must be below 360"
+            raise wrong("reverse_angle_deg", text=text)
+        return self
