@@ -13,7 +13,7 @@ from hilplant.demo.plant import Failed, Message, Started, serve_demo
 from hilplant.demo.sequence import Sequence, sequence
 from hilplant.demo.summary import summarise
 from hilplant.display import Scene, watch
-from hilplant.ecu.stalk import stalk_at
+from hilplant.ecu.stalk import stalk_at, stalk_words
 from hilplant.failure import Failure
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.server import Summary
@@ -88,4 +88,4 @@ def _next_message(pipe: "Connection[None, Message]") -> Message:
 
 def _scene(plan: Sequence, time_s: float) -> Scene:
     progress = f"{time_s:.1f} of {plan.seconds:g} s"
-    return Scene("hilplant demo", progress, stalk_at(plan.turns, time_s).value)
+    return Scene("hilplant demo", progress, stalk_words(stalk_at(plan.turns, time_s)))

@@ -9,6 +9,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import NamedTuple
@@ -18,10 +19,12 @@ from hilplant.bus.transport import open_transport
 from hilplant.daemon import recording
 from hilplant.demo.sequence import Sequence
 from hilplant.ecu.node import EcuNode, run_ecu
-from hilplant.ecu.relay_controller import Settings, Stalk
+from hilplant.ecu.settings import controller_settings
 from hilplant.ecu.stalk import stalk_at
+from hilplant.ecu.vocabulary import INTERVALS, Stalk
 from hilplant.runtime.clock import WallClock
 from hilplant.runtime.server import StopRequest, Summary, serve
+from hilplant.signals import INPUT_INDEX
 from hilplant.units import MILLISECOND_NS
 
 BENCH = "virtual"
@@ -56,7 +59,7 @@ def serve_demo(plan: Sequence, path: Path, pipe: "Connection[Message, None]") ->
 
 
 def _serve(plan: Sequence, path: Path, say: Callable[[Message], None]) -> Summary:
-    bench = load_bench(BENCH)
+    bench = _raining(load_bench(BENCH))
     ended, stop = threading.Event(), StopRequest()
     parent = os.getppid()
 
@@ -84,9 +87,17 @@ def _serve(plan: Sequence, path: Path, say: Callable[[Message], None]) -> Summar
                 ecu.join()
 
 
+def _raining(bench: Bench) -> Bench:
+    """Return the bench with a wet screen."""
+    input_row = bench.input_row.copy()
+    input_row[INPUT_INDEX["screen"]] = 1.0
+    return replace(bench, input_row=input_row)
+
+
 def _ecu_node(bench: Bench, plan: Sequence) -> EcuNode:
-    side = bench.ecu_side()
-    return EcuNode(side.receive, side.send, open_transport(bench.interface), Settings(pause_s=plan.pause_s))
+    settings = controller_settings(bench.ecu)._replace(pauses_s=(plan.pause_s,) * len(INTERVALS))
+    side = replace(bench.ecu_side(), stalk=())  # nobody else is on this bus
+    return EcuNode(side, open_transport(bench.interface), settings)
 
 
 def _drive(node: EcuNode, plan: Sequence, ended: Callable[[], bool]) -> None:

@@ -2,15 +2,15 @@
 
 from typing import NamedTuple
 
-from hilplant.ecu.relay_controller import Stalk
-from hilplant.ecu.stalk import Turn
+from hilplant.ecu.stalk import Turn, move_named
 from hilplant.failure import Failure
 
 USUAL_S = 20.0
 SHORTEST_S = 8.0
 
-#: A slow wipe takes about 1.5 s, so a stalk moved to off this long before the end still sees the wiper park.
-_PARKING_S = 2.5
+#: On a wet screen a slow wipe takes 1.6 s and a fast one 1.3 s: the last wipe has parked before the flick, and the
+#: flick before the end.
+_FLICK_S, _PARKING_S = 2.0, 1.8
 
 
 class Sequence(NamedTuple):
@@ -22,7 +22,7 @@ class Sequence(NamedTuple):
 
 
 def sequence(seconds: float | None) -> Sequence:
-    """Return off, slow, fast, intermittent and off again, spread over `seconds`.
+    """Return off, slow, fast, intermittent, off and a flick, spread over `seconds`.
 
     Raises
     ------
@@ -32,12 +32,19 @@ def sequence(seconds: float | None) -> Sequence:
     length_s = USUAL_S if seconds is None else seconds
     if not SHORTEST_S <= length_s <= 86400.0:
         raise Failure(f"demo: --seconds must be from {SHORTEST_S:g} to 86400, not {length_s:g}")
-    active_s = length_s - _PARKING_S
+    active_s = length_s - _FLICK_S - _PARKING_S
     turns = (
-        Turn(0.0, Stalk.OFF),
-        Turn(0.06 * active_s, Stalk.SLOW),
-        Turn(0.36 * active_s, Stalk.FAST),
-        Turn(0.56 * active_s, Stalk.INTERMITTENT),
-        Turn(active_s, Stalk.OFF),
+        _turn(0.0, "off"),
+        _turn(0.07 * active_s, "slow"),
+        _turn(0.36 * active_s, "fast"),
+        _turn(0.58 * active_s, "intermittent"),
+        _turn(active_s, "off"),
+        _turn(length_s - _FLICK_S, "flick"),
     )
     return Sequence(length_s, turns, pause_s=min(2.0, 0.08 * active_s))
+
+
+def _turn(time_s: float, word: str) -> Turn:
+    move = move_named(word)
+    assert move is not None
+    return Turn(time_s, move)

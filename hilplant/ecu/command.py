@@ -1,30 +1,35 @@
-"""What `hilplant ecu` does: the stand-in ECU on a bench's interface, its stalk written or typed."""
+"""What `hilplant ecu` does: the stand-in ECU on a bench's interface, its stalk written, heard on the bus, or typed."""
 
 import math
 import os
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 
 import typer
 
 from hilplant.bench import load_bench
 from hilplant.bus.transport import open_transport
 from hilplant.ecu.node import EcuNode, Report, run_ecu
-from hilplant.ecu.relay_controller import Settings
-from hilplant.ecu.stalk import StalkSource, TypedStalk, parse_stalk, stalk_at
+from hilplant.ecu.settings import controller_settings
+from hilplant.ecu.stalk import StalkSource, TypedStalk, parse_stalk, stalk_at, stalk_words
+from hilplant.ecu.vocabulary import Fault
 from hilplant.runtime.clock import WallClock
 from hilplant.runtime.server import StopRequest, ended_by_signals
+from hilplant.signals import STATUS
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 
 def ecu_command(bench_name: str, seconds: float | None, stalk: str | None, channel: str | None = None) -> int:
-    """Be the ECU until the time is up, or SIGTERM or Ctrl-C ends it; the relays are released at the end."""
+    """Be the ECU until the time is up, or SIGTERM or Ctrl-C ends it; the relays are released at the end.
+
+    A written stalk goes before the one on the bus, and that before a typed one.
+    """
     source = _source(stalk)
     bench = load_bench(bench_name)
     interface = bench.interface if channel is None else {**bench.interface, "channel": channel}
-    side = bench.ecu_side()
-    transport = open_transport(interface)
-    node = EcuNode(side.receive, side.send, transport, Settings(pause_s=bench.ecu.pause_s))
+    side = bench.ecu_side() if stalk is None else replace(bench.ecu_side(), stalk=())
+    node = EcuNode(side, open_transport(interface), controller_settings(bench.ecu))
     node.report = _teller()
     stop, clock = StopRequest(), WallClock()
     end_ns = math.inf if seconds is None else clock.now_ns() + seconds * SECOND_NS
@@ -37,19 +42,20 @@ def ecu_command(bench_name: str, seconds: float | None, stalk: str | None, chann
             run_ecu(node, source, clock, ended, pause_ns=round(bench.ecu.period_ms * MILLISECOND_NS))
         finally:
             node.close()
+    _tell_counts(node.counts)
     return 0
 
 
 def _source(text: str | None) -> StalkSource:
-    """Choose where the stalk's position comes from: the text, else lines on standard input."""
+    """Choose where the hand's stalk comes from: the text, else lines on standard input."""
     if text is not None:
         turns = parse_stalk(text)
         return lambda elapsed_s: stalk_at(turns, elapsed_s)
     descriptor = sys.stdin.fileno()
     if os.isatty(descriptor):
-        typer.echo("type off, slow, fast or intermittent (a first letter will do); Ctrl-C ends")
+        typer.echo("type off, slow, fast, intermittent (a first letter will do), i1 to i6, flick or wash; Ctrl-C ends")
         if os.tcgetpgrp(descriptor) != os.getpgrp():  # in the background, reading would stop this program
-            typer.echo("in the background: the stalk stays off; use --stalk", err=True)
+            typer.echo("in the background: the stalk comes from the bus, or with --stalk", err=True)
             return lambda elapsed_s: stalk_at((), elapsed_s)
     return TypedStalk(descriptor, typer.echo)
 
@@ -59,7 +65,7 @@ def _teller() -> Callable[[Report], None]:
     last: list[object] = [None]
 
     def tell(report: Report) -> None:
-        told = (report.stalk, report.state.phase, report.relays, report.park_known)
+        told = (report.stalk, report.state.phase, report.relays, report.fault, report.park_known)
         if told != last[0]:
             last[0] = told
             typer.echo(_line(report))
@@ -70,5 +76,14 @@ def _teller() -> Callable[[Report], None]:
 def _line(report: Report) -> str:
     relays = "OFF" if not report.relays.on else "FAST" if report.relays.fast else "SLOW"
     silent = "" if report.park_known else "; no word from the park switch"
-    stalk, phase = report.stalk.value, report.state.phase.value
-    return f"{report.time_s:8.3f} s  stalk {stalk}: {phase}, relays {relays}{silent}"
+    fault = "" if report.fault is Fault.NONE else f"; fault {report.fault.value}"
+    stalk, phase = stalk_words(report.stalk), report.state.phase.value
+    return f"{report.time_s:8.3f} s  stalk {stalk}: {phase}, relays {relays}{fault}{silent}"
+
+
+def _tell_counts(counts: list[int]) -> None:
+    """Say what the ECU refused or lost on the bus; frames of others are none of its business."""
+    found = zip(STATUS, counts, strict=True)
+    words = [f"{signal.name} {count}" for signal, count in found if count and signal.name != "unknown_frame"]
+    if words:
+        typer.echo(f"on the bus: {', '.join(words)}")

@@ -1,20 +1,26 @@
-"""The stand-in ECU on the bus: reads the park switch, lets the controller decide, commands the relays."""
+"""The stand-in ECU on the bus: hears stalk, park switch, current and supply; commands relays; tells its state."""
 
 import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from hilplant.bench.ecu_side import EcuSide
 from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.node import LinkSettings, Node
 from hilplant.bus.transport import Transport
-from hilplant.ecu.relay_controller import RELAYS_OFF, Relays, Settings, Stalk, State, advance
+from hilplant.ecu.relay_controller import State, advance
 from hilplant.ecu.stalk import StalkSource
+from hilplant.ecu.vocabulary import RELAYS_OFF, Fault, Inputs, Master, Relays, Settings, Stalk
 from hilplant.runtime.clock import Clock
-from hilplant.signals import INPUT_INDEX, INPUTS, PUBLISHED, PUBLISHED_INDEX
+from hilplant.signals import ECU_FAULTS, ECU_HEARD, ECU_HEARD_INDEX, ECU_SAID, ECU_SAID_INDEX, ECU_STATES
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
-_PARK = PUBLISHED_INDEX["park_contact"]
-_RELAYS = (INPUT_INDEX["relay_on"], INPUT_INDEX["relay_fast"])
+_PARK, _CURRENT, _SUPPLY = (ECU_HEARD_INDEX[name] for name in ("park_contact", "current_a", "supply_v"))
+_MASTER, _INTERVAL, _FLICK, _WASH = (
+    ECU_HEARD_INDEX[name] for name in ("master_input", "intermittent_switch", "flick_wipe", "wash")
+)
+_RELAYS = (ECU_SAID_INDEX["relay_on"], ECU_SAID_INDEX["relay_fast"])
+_TOLD = tuple(ECU_SAID_INDEX[name] for name in ("ecu_state", "ecu_fault", "ecu_tries"))
 
 
 class Report(NamedTuple):
@@ -24,58 +30,89 @@ class Report(NamedTuple):
     stalk: Stalk
     state: State
     relays: Relays
+    fault: Fault
     park_known: bool
 
 
 class EcuNode:
     """A CAN node with the relay controller in it.
 
-    Of the bench's messages it takes the one that carries the park contact and sends those that carry a relay;
-    supply and environment stay with whoever commands them. While the park contact is unknown the relays are
-    off. `report` is called at each poll.
+    Of the bench's messages it takes those with the park contact, the motor current or the supply voltage, and
+    sends those that carry a relay; supply and environment stay with whoever commands them. The stalk and the
+    ECU's status are messages of its own. While the park contact is unknown the relays are off. `report` is called
+    at each poll; `counts` are the node's, by ``signals.STATUS``.
     """
 
-    def __init__(
-        self,
-        received: Sequence[ReceivedMessage],
-        sent: Sequence[SentMessage],
-        transport: Transport,
-        settings: Settings,
-    ) -> None:
+    def __init__(self, side: EcuSide, transport: Transport, settings: Settings) -> None:
         """Join the bus with the ECU's side of a bench's messages."""
-        park = [message for message in received if _PARK in message.targets]
-        relays = [message for message in sent if set(_RELAYS) & set(message.sources)]
         self.state = State()
         self.report: Callable[[Report], None] | None = None
         self._settings = settings
-        self._commands = [signal.default for signal in INPUTS]
-        self._node = Node(park, relays, transport, LinkSettings(), [math.nan] * len(PUBLISHED))
+        self._said = [signal.default for signal in ECU_SAID]
+        heard = [*_that_carry((_PARK, _CURRENT, _SUPPLY), side.receive), *side.stalk]
+        sent = [*_commands(side.send), *side.status]
+        self._node = Node(heard, sent, transport, LinkSettings(), [math.nan] * len(ECU_HEARD))
+
+    @property
+    def counts(self) -> list[int]:
+        """What went wrong on the bus, by ``signals.STATUS``."""
+        return self._node.counts
 
     def poll(self, now_ns: int, stalk: Stalk) -> Relays:
-        """Take in frames, decide, send what is due; `now_ns` must not run backwards."""
+        """Take in frames, decide, send what is due; `now_ns` must not run backwards.
+
+        `stalk` is that of the hand at this end; a stalk that is heard on the bus goes before it.
+        """
         self._node.receive(now_ns)
-        value = self._node.values[_PARK]
-        contact = None if self._node.lost or math.isnan(value) else value > 0.5
+        heard_once = not math.isnan(self._node.values[_MASTER])
+        lost = heard_once and self._node.silent(_MASTER)
+        stalk = self._heard_stalk() if heard_once and not lost else stalk
+        contact = self._known(_PARK)
+        closed = None if math.isnan(contact) else contact > 0.5
+        inputs = Inputs(stalk, closed, self._known(_CURRENT), self._known(_SUPPLY))
         now_s = now_ns / SECOND_NS
-        self.state, relays = advance(self.state, stalk, contact, now_s, self._settings)
-        self._command(relays)
-        self._node.send(now_ns, self._commands)
+        self.state, relays, fault = advance(self.state, inputs, now_s, self._settings)
+        fault = Fault.STALK_LOST if lost and fault is Fault.NONE else fault
+        self._say(relays, fault)
+        self._node.send(now_ns, self._said)
         if self.report is not None:
-            self.report(Report(now_s, stalk, self.state, relays, contact is not None))
+            self.report(Report(now_s, stalk, self.state, relays, fault, closed is not None))
         return relays
 
     def release(self) -> None:
         """Send the relays off, once: the last word before the ECU leaves the bus."""
-        self._command(RELAYS_OFF)
-        self._node.send_all(self._commands)
+        self._say(RELAYS_OFF, self.state.fault)
+        self._node.send_all(self._said)
 
     def close(self) -> None:
         """Give the interface back."""
         self._node.close()
 
-    def _command(self, relays: Relays) -> None:
-        for index, value in zip(_RELAYS, relays, strict=True):
-            self._commands[index] = float(value)
+    def _known(self, target: int) -> float:
+        """Return a value as last heard, nan when that is too long ago."""
+        return math.nan if self._node.silent(target) else self._node.values[target]
+
+    def _heard_stalk(self) -> Stalk:
+        values = self._node.values
+        interval = 1 if math.isnan(values[_INTERVAL]) else round(values[_INTERVAL])
+        return Stalk(Master(round(values[_MASTER])), interval, values[_FLICK] > 0.5, values[_WASH] > 0.5)
+
+    def _say(self, relays: Relays, fault: Fault) -> None:
+        told = (_STATE_NUMBERS[self.state.phase.value], _FAULT_NUMBERS[fault.value], float(self.state.tries))
+        for index, value in zip((*_RELAYS, *_TOLD), (*relays, *told), strict=True):
+            self._said[index] = float(value)
+
+
+_STATE_NUMBERS = {name: float(number) for number, name in enumerate(ECU_STATES)}
+_FAULT_NUMBERS = {name: float(number) for number, name in enumerate(ECU_FAULTS)}
+
+
+def _that_carry(targets: Sequence[int], messages: Sequence[ReceivedMessage]) -> list[ReceivedMessage]:
+    return [message for message in messages if set(targets) & set(message.targets)]
+
+
+def _commands(messages: Sequence[SentMessage]) -> list[SentMessage]:
+    return [message for message in messages if set(_RELAYS) & set(message.sources)]
 
 
 def run_ecu(
@@ -83,7 +120,7 @@ def run_ecu(
     stalk: StalkSource,
     clock: Clock,
     stop: Callable[[], bool],
-    pause_ns: int = 2 * MILLISECOND_NS,
+    pause_ns: int = 5 * MILLISECOND_NS,
 ) -> None:
     """Poll until `stop` says so, resting `pause_ns` in between, then release the relays."""
     start_ns = clock.now_ns()

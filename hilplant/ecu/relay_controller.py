@@ -1,127 +1,107 @@
-"""A stand-in body ECU: decides from the stalk and the park switch what the two wiper relays do.
+"""The stand-in body ECU's mind: stalk, park switch, current and supply in; relays and fault out.
 
-The states follow what the thesis tells of the classic control (7.1.1) and of its chart (8.4, Figures 8-7
-and 8-8), with one pause, without the flick and without waiting for park between slow and fast. Time comes in
-as an argument.
+Pure: the state and the time are arguments, so that a second of wiping takes no time to try. What it does when is
+the table in :mod:`hilplant.ecu.chart`.
 """
 
-import math
-from enum import Enum
 from typing import NamedTuple
 
+from hilplant.ecu.chart import EXITS, RESTING, SPEEDS, WIPING, Phase, Transition
+from hilplant.ecu.conditions import View
+from hilplant.ecu.sensing import Senses, sense
+from hilplant.ecu.vocabulary import RELAYS_OFF, Fault, Inputs, Relays, Settings
 
-class Stalk(Enum):
-    """What the driver wants."""
-
-    OFF = "off"
-    SLOW = "slow"
-    FAST = "fast"
-    INTERMITTENT = "intermittent"
-
-
-class Phase(Enum):
-    """What the controller is doing."""
-
-    OFF = "off"
-    RUNNING = "running"  # drives until the stalk says otherwise
-    WIPING = "wiping"  # drives slowly until the wiper comes to park
-    PAUSING = "pausing"  # rests between two intermittent wipes
-    BLIND = "blind"  # was driving when the park switch went silent
-    FAULT = "fault"  # park did not come in time; latched until the stalk is moved
-
-
-class Relays(NamedTuple):
-    """The command to the plant: ON/OFF relay and FAST/SLOW relay."""
-
-    on: bool
-    fast: bool
-
-
-class Settings(NamedTuple):
-    """Times of the controller, all assumed: the thesis names none."""
-
-    pause_s: float = 2.0
-    park_timeout_s: float = 8.0
-    debounce_s: float = 0.02
+_RESTING, _WIPING = frozenset(RESTING), frozenset(WIPING)
 
 
 class State(NamedTuple):
     """What the controller remembers; the defaults are its state at power-on.
 
-    `since_s` is when the phase began, or while driving when the latest turn began. `opened_s` is when the
-    park contact opened (infinite while it is closed); `away` that it has been open for longer than a bounce.
+    `since_s` is when the phase began, `turn_s` when the wiper last came to park or began to be driven. `fast` is
+    the speed at which it drives. `tries` counts what went wrong since the last sound turn or rest in park. `leaving`
+    says that it was started outside the park window, where it rests, and has not passed the window yet.
     """
 
     phase: Phase = Phase.OFF
     since_s: float = 0.0
-    opened_s: float = math.inf
-    away: bool = False
-    fault_stalk: Stalk = Stalk.OFF
+    turn_s: float = 0.0
+    fast: bool = False
+    wipes_left: int = 1
+    tries: int = 0
+    fault: Fault = Fault.NONE
+    latched_demand: bool = False
+    leaving: bool = False
+    senses: Senses = Senses()
 
 
-RELAYS_OFF = Relays(False, False)
-_DRIVING = (Phase.RUNNING, Phase.WIPING)
+def advance(state: State, inputs: Inputs, now_s: float, settings: Settings) -> tuple[State, Relays, Fault]:
+    """Take one look at the inputs; return the relays to command and the fault to report.
 
-
-def advance(
-    state: State, stalk: Stalk, park_contact: bool | None, now_s: float, settings: Settings
-) -> tuple[State, Relays]:
-    """Take one look at the stalk and the park contact (None while unknown); return the relays to command.
-
-    The wiper has arrived at park only when the contact closes after it was open: a wiper that is still
-    leaving the park window, or passing it when the stalk goes off, makes its turn to the end and stops where
-    the window begins. So it never brakes at the window's far edge and coasts out of it.
+    At most one transition of the chart is taken in each call. `now_s` must not run backwards.
     """
-    if park_contact is None:
-        blind = state._replace(phase=Phase.BLIND) if state.phase in _DRIVING else state
-        return blind._replace(opened_s=math.inf, away=False), RELAYS_OFF
-    state, arrived = _watch_contact(state, park_contact, now_s, settings)
-    if state.phase in _DRIVING:
-        state = _drive(state, stalk, arrived, now_s, settings)
+    state, _ = take(state, inputs, now_s, settings)
+    driving = state.phase in _WIPING
+    return state, Relays(True, state.fast) if driving else RELAYS_OFF, state.fault
+
+
+def take(state: State, inputs: Inputs, now_s: float, settings: Settings) -> tuple[State, Transition | None]:
+    """Do what :func:`advance` does, and return the transition that was taken, None where the phase stays."""
+    senses = sense(state.senses, inputs, now_s, settings)
+    if senses.arrived and state.leaving:
+        senses, state = senses._replace(arrived=False), state._replace(leaving=False)
+    turned_s = now_s - state.turn_s
+    state = state._replace(senses=senses, turn_s=now_s if senses.arrived else state.turn_s)
+    view = _view(state, inputs, now_s, settings)
+    row = next((row for row in EXITS[state.phase] if row.condition.holds(view)), None)
+    if row is not None:
+        state = _enter(state, row, view)
+    elif senses.arrived:
+        state = state._replace(wipes_left=state.wipes_left - 1)
+    return _forgive(state, turned_s, now_s, settings), row
+
+
+def _view(state: State, inputs: Inputs, now_s: float, settings: Settings) -> View:
+    return View(
+        inputs.stalk,
+        state.senses,
+        settings,
+        now_s,
+        in_phase_s=now_s - state.since_s,
+        turning_s=now_s - state.turn_s,
+        wipes_left=state.wipes_left,
+        tries=state.tries,
+        latched_demand=state.latched_demand,
+    )
+
+
+def _enter(state: State, row: Transition, view: View) -> State:
+    """Return the state at the beginning of a phase."""
+    was_driving, now_s = state.phase in _WIPING, view.now_s
+    speed = SPEEDS.get(row.target)
+    state = state._replace(
+        phase=row.target,
+        since_s=now_s,
+        turn_s=state.turn_s if was_driving else now_s,
+        fast=(was_driving and state.fast) if speed is None else speed,
+        tries=state.tries + row.failed,
+        fault=row.fault or state.fault,
+        leaving=state.leaving if was_driving else view.settings.rests_open and view.senses.contact is False,
+    )
+    if row.target is Phase.WASH_WIPES:
+        return state._replace(wipes_left=view.settings.wash_wipes)
+    if row.target is Phase.SINGLE_WIPE:
+        return state._replace(wipes_left=1)
+    if row.target is Phase.LOCKOUT:
+        return state._replace(latched_demand=view.stalk.demands)
+    return state._replace(tries=0) if Phase.LOCKOUT in row.sources else state
+
+
+def _forgive(state: State, turned_s: float, now_s: float, settings: Settings) -> State:
+    """Forget what went wrong after a sound turn that goes on, or a rest in park."""
+    senses = state.senses
+    if state.phase in _WIPING:
+        sound = senses.arrived and turned_s >= settings.settle_s
     else:
-        state = _rest(state, stalk, park_contact, now_s, settings)
-    driving = state.phase in _DRIVING
-    return state, Relays(driving, driving and stalk is Stalk.FAST)
-
-
-def _watch_contact(state: State, contact: bool, now_s: float, settings: Settings) -> tuple[State, bool]:
-    """Follow the contact through its bounces; say whether the wiper has just come to park."""
-    if contact:
-        return state._replace(opened_s=math.inf, away=False), state.away
-    opened_s = min(state.opened_s, now_s)
-    away = state.away or now_s - opened_s >= settings.debounce_s
-    return state._replace(opened_s=opened_s, away=away), False
-
-
-def _drive(state: State, stalk: Stalk, arrived: bool, now_s: float, settings: Settings) -> State:
-    if arrived:
-        state = state._replace(since_s=now_s)
-    elif now_s - state.since_s > settings.park_timeout_s:
-        return _enter(state, Phase.FAULT, now_s)._replace(fault_stalk=stalk)
-    if stalk in (Stalk.SLOW, Stalk.FAST):
-        return state._replace(phase=Phase.RUNNING)
-    if arrived:
-        return _enter(state, Phase.OFF if stalk is Stalk.OFF else Phase.PAUSING, now_s)
-    return state._replace(phase=Phase.WIPING)
-
-
-def _rest(state: State, stalk: Stalk, contact: bool, now_s: float, settings: Settings) -> State:
-    """Decide whether a controller that does not drive goes on resting."""
-    match state.phase:
-        case Phase.FAULT if stalk is state.fault_stalk:
-            return state
-        case Phase.PAUSING if stalk is Stalk.INTERMITTENT and now_s - state.since_s < settings.pause_s:
-            return state
-        case Phase.BLIND if stalk is Stalk.OFF and not contact:
-            return _enter(state, Phase.WIPING, now_s)
-    return _start(state, stalk, now_s)
-
-
-def _start(state: State, stalk: Stalk, now_s: float) -> State:
-    if stalk is Stalk.OFF:
-        return state if state.phase is Phase.OFF else _enter(state, Phase.OFF, now_s)
-    return _enter(state, Phase.WIPING if stalk is Stalk.INTERMITTENT else Phase.RUNNING, now_s)
-
-
-def _enter(state: State, phase: Phase, now_s: float) -> State:
-    return state._replace(phase=phase, since_s=now_s)
+        parked_s = now_s if settings.rests_open else now_s - senses.closed_s
+        sound = state.phase in _RESTING and min(parked_s, now_s - state.since_s) >= settings.settle_s
+    return state._replace(tries=0, fault=Fault.NONE) if sound else state

@@ -1,31 +1,45 @@
-"""The driver's hand: stalk positions from a written sequence, or typed in a terminal."""
+"""The driver's hand: a stalk moved by a written sequence, or by lines typed in a terminal."""
 
 import math
 import os
+import re
 import select
 from collections.abc import Callable
 from typing import NamedTuple
 
-from hilplant.ecu.relay_controller import Stalk
+from hilplant.ecu.vocabulary import INTERVALS, Master, Stalk
 from hilplant.failure import Failure
 
-#: Gives the stalk's position at a time [s] since the start.
+#: Gives the stalk at a time [s] since the start.
 StalkSource = Callable[[float], Stalk]
+
+#: How long [s] a button is pressed: long enough to be seen in messages of 100 ms.
+PRESSES_S = {"flick": 0.3, "wash": 1.0}
+WORDS = (*(position.name.lower() for position in Master), *PRESSES_S)
+_WRITTEN = re.compile(r"([a-z]*)([0-9]*)")
 
 
 class StalkError(Failure):
     """A stalk sequence that cannot be read; its text is one line for the user."""
 
 
+class Move(NamedTuple):
+    """One movement of the hand: to a position, to a pause, or a press of a button; None leaves as it is."""
+
+    master: Master | None = None
+    interval: int | None = None
+    press: str | None = None
+
+
 class Turn(NamedTuple):
-    """From this time [s] on, the stalk is in this position."""
+    """A movement at a time [s]."""
 
     time_s: float
-    stalk: Stalk
+    move: Move
 
 
 def parse_stalk(text: str) -> tuple[Turn, ...]:
-    """Read a sequence such as ``0:off,1:slow,6:fast``: times [s] must rise; off before the first."""
+    """Read a sequence such as ``0:off,1:slow,6:intermittent3,20:off,22:flick``: times [s] must rise."""
     turns: list[Turn] = []
     for number, entry in enumerate(text.split(","), start=1):
         place = f"stalk sequence, entry {number} '{entry.strip()}'"
@@ -44,40 +58,62 @@ def _parse_entry(place: str, entry: str) -> Turn:
         time_s = math.nan
     if not colon or not 0.0 <= time_s < math.inf:
         raise StalkError(f"{place}: write SECONDS:POSITION, e.g. 1.5:slow")
-    return Turn(time_s, _named(place, position))
+    move = move_named(position)
+    if move is None:
+        raise StalkError(f"{place}: position must be {wanted()}")
+    return Turn(time_s, move)
 
 
-def _named(place: str, text: str) -> Stalk:
-    stalk = stalk_named(text)
-    if stalk is None:
-        raise StalkError(f"{place}: position must be one of {', '.join(s.value for s in Stalk)}")
-    return stalk
+def wanted() -> str:
+    """Say what may be written."""
+    return f"one of {', '.join(WORDS)}, intermittent with a pause from 1 to {INTERVALS[-1]}, or the pause alone"
 
 
-def stalk_named(text: str) -> Stalk | None:
-    """Find a position by its name or the beginning of its name."""
-    word = text.strip().lower()
-    return next((stalk for stalk in Stalk if word and stalk.value.startswith(word)), None)
+def move_named(text: str) -> Move | None:
+    """Find a movement by its name or the beginning of it, such as ``fast``, ``i3``, ``4`` or ``wash``."""
+    found = _WRITTEN.fullmatch(text.strip().lower())
+    if found is None or not found[0]:
+        return None
+    word = next((word for word in WORDS if found[1] and word.startswith(found[1])), None)
+    interval = int(found[2]) if found[2] else None
+    if (found[1] and word is None) or interval not in (None, *INTERVALS):
+        return None
+    if interval is not None and word not in (None, "intermittent"):
+        return None
+    if word in PRESSES_S:
+        return Move(press=word)
+    return Move(Master[word.upper()] if word else None, interval)
 
 
 def stalk_at(turns: tuple[Turn, ...], elapsed_s: float) -> Stalk:
-    """Return the position at a time [s] since the start."""
-    position = Stalk.OFF
+    """Return the stalk at a time [s] since the start: off and pause 1 before the first movement."""
+    stalk = Stalk()
     for turn in turns:
         if turn.time_s > elapsed_s:
             break
-        position = turn.stalk
-    return position
+        stalk = moved(stalk, turn.move, elapsed_s - turn.time_s)
+    return stalk
+
+
+def moved(stalk: Stalk, move: Move, ago_s: float) -> Stalk:
+    """Return the stalk some time [s] after a movement."""
+    if move.press is not None:
+        pressed = ago_s < PRESSES_S[move.press]
+        flick, wash = pressed and move.press == "flick", pressed and move.press == "wash"
+        return stalk._replace(flick=stalk.flick or flick, wash=stalk.wash or wash)
+    master = stalk.master if move.master is None else move.master
+    return stalk._replace(master=master, interval=move.interval or stalk.interval)
 
 
 class TypedStalk:
-    """The position last typed as a line in a terminal (a first letter is enough); off until then."""
+    """The stalk as typed line by line in a terminal (a first letter is enough); off until then."""
 
     def __init__(self, descriptor: int, answer: Callable[[str], None]) -> None:
         """Listen to an open file; `answer` is told what was understood."""
         self._descriptor = descriptor
         self._answer = answer
-        self._stalk = Stalk.OFF
+        self._stalk = Stalk()
+        self._presses: dict[str, float] = {}
         self._open = True
 
     def __call__(self, elapsed_s: float) -> Stalk:
@@ -86,13 +122,23 @@ class TypedStalk:
             typed = os.read(self._descriptor, 4096)
             self._open = bool(typed)  # end of file: the position stays
             for line in typed.decode(errors="replace").splitlines():
-                self._take(line)
-        return self._stalk
+                self._take(line, elapsed_s)
+        pressed = {word for word, at_s in self._presses.items() if elapsed_s - at_s < PRESSES_S[word]}
+        return self._stalk._replace(flick="flick" in pressed, wash="wash" in pressed)
 
-    def _take(self, line: str) -> None:
-        stalk = stalk_named(line)
-        if stalk is None:
-            self._answer(f"stalk: type {', '.join(s.value for s in Stalk)}, or a first letter")
-        else:
-            self._stalk = stalk
-            self._answer(f"stalk: {stalk.value}")
+    def _take(self, line: str, elapsed_s: float) -> None:
+        move = move_named(line)
+        if move is None:
+            self._answer(f"stalk: type {wanted()}; a first letter will do, fl for flick")
+            return
+        if move.press is not None:
+            self._presses[move.press] = elapsed_s
+        self._stalk = moved(self._stalk, move._replace(press=None), 0.0)
+        self._answer(f"stalk: {move.press or stalk_words(self._stalk)}")
+
+
+def stalk_words(stalk: Stalk) -> str:
+    """Say in a few words where the stalk is."""
+    words = stalk.master.name.lower()
+    words += f" {stalk.interval}" if stalk.master is Master.INTERMITTENT else ""
+    return words + (" + flick" if stalk.flick else "") + (" + wash" if stalk.wash else "")

@@ -80,6 +80,8 @@ class Loop:
     def __init__(self, plant: PlantRows, node: Node, clock: Clock, ring: Ring | None, on_overrun: str) -> None:
         self.progress = Progress()
         self.latency = Latency()
+        #: A controller inside the loop: called with time [ns], state row and input row, it writes its command there.
+        self.control: Callable[[int, NDArray[np.float64], NDArray[np.float64]], None] | None = None
         self._plant = plant
         self._node = node
         self._clock = clock
@@ -133,6 +135,8 @@ class Loop:
         if safe:
             for index, value in self._plant.safe:
                 self._inputs[index] = value
+        elif self.control is not None:
+            self.control(self._bus_ns, self._state, self._inputs)
         plant_tick(self._state, self._inputs, self._plant.parameter_row, self._plant.tables, self._outputs)
         self._published = [*self._outputs.tolist(), *self._status_values(mode)]
 

@@ -3,7 +3,7 @@
 import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 from hilplant.bus.codec import ReceivedMessage, SentMessage
@@ -59,6 +59,10 @@ class ServedBench(PlantRows, Protocol):
     @property
     def send(self) -> tuple[SentMessage, ...]:
         """Messages that show the plant."""
+
+    @property
+    def others(self) -> frozenset[tuple[int, bool]]:
+        """Identifiers of messages between others, with whether they are extended."""
 
     @property
     def loop(self) -> LoopSettings:
@@ -119,7 +123,8 @@ def link_settings(loop: LoopSettings) -> LinkSettings:
 def build_loop(bench: ServedBench, transport: Transport, clock: Clock, ring: Ring | None = None) -> Loop:
     """Wire a bench, an open interface and a clock into a loop."""
     values = [float(value) for value in bench.input_row]
-    node = Node(bench.receive, bench.send, transport, link_settings(bench.loop), values)
+    settings = replace(link_settings(bench.loop), others=bench.others)
+    node = Node(bench.receive, bench.send, transport, settings, values)
     return Loop(bench, node, clock, ring, bench.loop.on_overrun)
 
 

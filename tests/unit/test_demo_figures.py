@@ -9,7 +9,8 @@ import pytest
 from hilplant.demo.figures import COLUMNS, figures
 from hilplant.demo.sequence import SHORTEST_S, sequence
 from hilplant.demo.summary import loop_lines, wiping_lines
-from hilplant.ecu.relay_controller import Stalk
+from hilplant.ecu.stalk import stalk_at
+from hilplant.ecu.vocabulary import Master
 from hilplant.failure import Failure
 from hilplant.runtime.server import Summary
 
@@ -66,15 +67,12 @@ def test_the_summary_fits_80_columns():
 @pytest.mark.parametrize("seconds", [None, SHORTEST_S, 12.0, 3600.0])
 def test_the_sequence_shows_every_mode_in_order_within_its_time(seconds):
     plan = sequence(seconds)
-    assert [turn.stalk for turn in plan.turns] == [
-        Stalk.OFF,
-        Stalk.SLOW,
-        Stalk.FAST,
-        Stalk.INTERMITTENT,
-        Stalk.OFF,
-    ]
     times = [turn.time_s for turn in plan.turns] + [plan.seconds]
-    assert all(later - earlier >= 0.3 for earlier, later in pairwise(times))
+    middles = [(earlier + later) / 2.0 for earlier, later in pairwise(times)]
+    stages = [stalk_at(plan.turns, at_s).master for at_s in middles]
+    assert stages == [Master.OFF, Master.SLOW, Master.FAST, Master.INTERMITTENT, Master.OFF, Master.OFF]
+    assert stalk_at(plan.turns, times[-2]).flick
+    assert all(later - earlier >= 0.29 for earlier, later in pairwise(times))
     assert plan.seconds == (seconds or 20.0)
 
 

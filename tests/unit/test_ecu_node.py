@@ -3,25 +3,21 @@
 import cantools
 import pytest
 
-from hilplant.bus.codec import (
-    ReceivedMessage,
-    SentMessage,
-    SignalMapping,
-    Timing,
-    received_message,
-    sent_message,
-)
+from hilplant.bench.ecu_side import EcuSide
+from hilplant.bus.codec import ReceivedMessage, SentMessage, SignalMapping, Timing, received_message, sent_message
 from hilplant.bus.frame import Frame
 from hilplant.bus.transport import SendResult
 from hilplant.ecu import command
+from hilplant.ecu.chart import Phase
 from hilplant.ecu.node import EcuNode, Report, run_ecu
-from hilplant.ecu.relay_controller import Phase, Settings, Stalk
+from hilplant.ecu.vocabulary import Fault, Master, Settings, Stalk
 from hilplant.runtime.clock import VirtualClock
-from hilplant.signals import INPUTS, PUBLISHED
+from hilplant.signals import ECU_FAULTS, ECU_HEARD, ECU_SAID, ECU_STATES
 from hilplant.units import MILLISECOND_NS
 
+STATES, FAULTS = (" ".join(f'{i} "{name}"' for i, name in enumerate(names)) for names in (ECU_STATES, ECU_FAULTS))
 DATABASE = cantools.database.load_string(
-    """
+    f"""
 VERSION ""
 NS_ :
 BS_:
@@ -31,42 +27,60 @@ BO_ 256 Relays: 2 ECU
  SG_ On : 0|8@1+ (1,0) [0|1] "" PLANT
 BO_ 257 Supply: 2 ECU
  SG_ Volts : 0|16@1+ (0.01,0) [0|40] "V" PLANT
+BO_ 258 Stalk: 2 PLANT
+ SG_ Stage : 0|8@1+ (1,0) [0|3] "" ECU
+ SG_ Flick : 8|1@1+ (1,0) [0|1] "" ECU
+BO_ 259 Told: 2 ECU
+ SG_ State : 0|8@1+ (1,0) [0|20] "" PLANT
+ SG_ Fault : 8|8@1+ (1,0) [0|8] "" PLANT
 BO_ 512 Park: 1 PLANT
  SG_ Open : 0|1@1+ (1,0) [0|1] "" ECU
-BO_ 513 Motor: 2 PLANT
+BO_ 513 Motor: 4 PLANT
  SG_ Current : 0|16@1- (0.01,0) [-100|100] "A" ECU
+ SG_ Battery : 16|16@1+ (0.01,0) [0|40] "V" ECU
 BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
 BA_DEF_DEF_ "GenMsgCycleTime" 20;
+VAL_ 258 Stage 3 "fast" 2 "slow" 1 "intermittent" 0 "off" ;
+VAL_ 259 State {STATES} ;
+VAL_ 259 Fault {FAULTS} ;
 """,
     "dbc",
 )
-PARK_TIMEOUT_NS = 100 * MILLISECOND_NS
+TIMEOUT_NS = 100 * MILLISECOND_NS
 CLOSED, OPEN = b"\x00", b"\x01"
+OFF, SLOW, FAST = Stalk(), Stalk(Master.SLOW), Stalk(Master.FAST)
 
 
-def received(name: str, signal: str, plant_signal: str, invert: bool = False) -> ReceivedMessage:
-    mapping = [SignalMapping(signal, plant_signal, invert=invert)]
-    message = DATABASE.get_message_by_name(name)
-    return received_message(message, mapping, PUBLISHED, PARK_TIMEOUT_NS)
+def received(name: str, timeout_ns: int = TIMEOUT_NS, **signals: SignalMapping | str) -> ReceivedMessage:
+    mapping = [at if isinstance(at, SignalMapping) else SignalMapping(signal, at) for signal, at in signals.items()]
+    return received_message(DATABASE.get_message_by_name(name), mapping, ECU_HEARD, timeout_ns)
 
 
 def sent(name: str, **plant_signals: str) -> SentMessage:
     mapping = [SignalMapping(signal, plant_signal) for signal, plant_signal in plant_signals.items()]
     timing = Timing(on_change=tuple(plant_signals.values()))
-    return sent_message(DATABASE.get_message_by_name(name), mapping, INPUTS, timing)
+    return sent_message(DATABASE.get_message_by_name(name), mapping, ECU_SAID, timing)
+
+
+def side(stalk_timeout_ns: int = 0) -> EcuSide:
+    park = received("Park", Open=SignalMapping("Open", "park_contact", invert=True))
+    motor = received("Motor", Current="current_a", Battery="supply_v")
+    relays = sent("Relays", On="relay_on", Fast="relay_fast")
+    stalk = received("Stalk", stalk_timeout_ns, Stage="master_input", Flick="flick_wipe")
+    told = sent("Told", State="ecu_state", Fault="ecu_fault")
+    return EcuSide((park, motor), (relays, sent("Supply", Volts="supply_v")), (stalk,), (told,))
 
 
 class Wire:
     """An interface whose other end is the test."""
 
     up = True
+    missed = 0
 
     def __init__(self) -> None:
         self.arriving: list[Frame] = []
         self.sent: list[Frame] = []
         self.closed = False
-
-    missed = 0
 
     def receive(self, limit: int) -> list[Frame]:
         arrived, self.arriving = self.arriving[:limit], self.arriving[limit:]
@@ -86,27 +100,36 @@ class Wire:
 class Seat:
     """The ECU, its wire and a clock: one place to drive it from."""
 
-    def __init__(self) -> None:
+    def __init__(self, stalk_timeout_ns: int = 0) -> None:
         self.wire = Wire()
         self.now_ms = 0
-        park = received("Park", "Open", "park_contact", invert=True)
-        motor = received("Motor", "Current", "current_a")
-        relays = sent("Relays", On="relay_on", Fast="relay_fast")
-        supply = sent("Supply", Volts="supply_v")
-        self.node = EcuNode([park, motor], [relays, supply], self.wire, Settings())
+        self.node = EcuNode(side(stalk_timeout_ns), self.wire, Settings())
 
-    def poll(self, stalk: Stalk, park: bytes | None, milliseconds: int = 1) -> list[Frame]:
-        """Poll every millisecond for a while with a park frame each time; return what was sent."""
+    def poll(self, stalk: Stalk, park: bytes | None, milliseconds: int = 1, motor: bytes | None = None) -> list[Frame]:
+        """Poll every millisecond for a while with a park frame each time; return what was sent to the relays."""
         self.wire.sent.clear()
         for _ in range(milliseconds):
-            if park is not None:
-                self.wire.arriving.append(Frame(512, park))
+            for identifier, data in ((512, park), (513, motor)):
+                if data is not None:
+                    self.wire.arriving.append(Frame(identifier, data))
             self.node.poll(self.now_ms * MILLISECOND_NS, stalk)
             self.now_ms += 1
-        return list(self.wire.sent)
+        return [frame for frame in self.wire.sent if frame.identifier == 256]
+
+    def hear(self, stage: int, flick: bool = False) -> None:
+        self.wire.arriving.append(Frame(258, bytes([stage, flick])))
+
+    def told(self) -> tuple[str, str]:
+        """Return state and fault in the ECU's last message about itself."""
+        data = next(frame.data for frame in reversed(self.wire.sent) if frame.identifier == 259)
+        return ECU_STATES[data[0]], ECU_FAULTS[data[1]]
 
 
-OFF, SLOW, FAST = Frame(256, b"\x00\x00"), Frame(256, b"\x01\x00"), Frame(256, b"\x01\x01")
+REST, RUN, RUN_FAST = Frame(256, b"\x00\x00"), Frame(256, b"\x01\x00"), Frame(256, b"\x01\x01")
+
+
+def motor(current_a: float, supply_v: float) -> bytes:
+    return DATABASE.encode_message("Motor", {"Current": current_a, "Battery": supply_v})
 
 
 @pytest.fixture
@@ -114,62 +137,117 @@ def seat() -> Seat:
     return Seat()
 
 
-def test_relays_are_sent_cyclically_and_nothing_else_is(seat):
-    assert seat.poll(Stalk.OFF, CLOSED, 100) == [OFF] * 5
+def test_relays_are_sent_cyclically_and_so_is_the_state_and_nothing_else(seat):
+    assert seat.poll(OFF, CLOSED, 100) == [REST] * 5
+    assert [frame.identifier for frame in seat.wire.sent] == [256, 259] * 5
+    assert seat.told() == ("off", "none")
 
 
 def test_a_change_is_sent_at_once_and_the_cycle_goes_on(seat):
-    seat.poll(Stalk.OFF, CLOSED, 3)
-    assert seat.poll(Stalk.SLOW, CLOSED) == [SLOW]
-    assert seat.poll(Stalk.FAST, CLOSED) == [FAST]
-    assert seat.poll(Stalk.FAST, CLOSED, 20) == [FAST]
+    seat.poll(OFF, CLOSED, 3)
+    assert seat.poll(SLOW, CLOSED) == [RUN]
+    assert seat.told() == ("slow", "none")
+    assert seat.poll(SLOW, CLOSED, 20) == [RUN]
 
 
 def test_the_relays_stay_off_until_the_park_switch_has_spoken(seat):
-    assert set(seat.poll(Stalk.SLOW, None, 50)) == {OFF}
-    assert seat.poll(Stalk.SLOW, CLOSED) == [SLOW]
+    assert set(seat.poll(SLOW, None, 50)) == {REST}
+    assert seat.told() == ("blind", "park_unknown")
+    seat.poll(SLOW, CLOSED)
+    assert seat.poll(SLOW, CLOSED) == [RUN]
 
 
 def test_silence_of_the_park_switch_for_its_timeout_releases_the_relays_until_it_speaks(seat):
-    seat.poll(Stalk.SLOW, OPEN, 500)
-    assert OFF not in seat.poll(Stalk.SLOW, None, 100)
-    assert seat.poll(Stalk.SLOW, None) == [OFF]
-    assert set(seat.poll(Stalk.SLOW, None, 1000)) == {OFF}
+    seat.poll(SLOW, OPEN, 500)
+    assert REST not in seat.poll(SLOW, None, 100)
+    assert seat.poll(SLOW, None) == [REST]
+    assert set(seat.poll(SLOW, None, 1000)) == {REST}
     assert seat.node.state.phase is Phase.BLIND
-    assert seat.poll(Stalk.SLOW, OPEN)[-1] == SLOW
+    assert seat.poll(SLOW, OPEN)[-1] == RUN
 
 
 def test_silence_of_other_messages_and_foreign_frames_do_not_matter(seat):
-    seat.wire.arriving += [
-        Frame(0x7FF, b"junk"),
-        Frame(512, b"\x01\x00"),
-        Frame(513, b"\x00\x00", remote=True),
-    ]
-    assert SLOW in seat.poll(Stalk.SLOW, OPEN, 300)
-    assert seat.poll(Stalk.SLOW, OPEN, 20) == [SLOW]
+    seat.poll(SLOW, OPEN, 50, motor(3.0, 13.5))
+    seat.wire.arriving += [Frame(0x7FF, b"junk"), Frame(512, b"\x01\x00"), Frame(513, b"\x00\x00", remote=True)]
+    assert RUN in seat.poll(SLOW, OPEN, 300)
+    assert seat.poll(SLOW, OPEN, 20) == [RUN]
+
+
+def test_the_motors_current_is_heard_and_a_stall_ends_the_drive(seat):
+    seat.poll(SLOW, OPEN, 400, motor(10.9, 13.5))
+    assert seat.node.state.phase is Phase.SLOW
+    seat.poll(SLOW, OPEN, 200, motor(10.9, 13.5))
+    assert seat.told() == ("retry", "stall")
+
+
+def test_a_current_that_is_no_longer_heard_is_not_held_against_the_wiper(seat):
+    seat.poll(SLOW, OPEN, 300, motor(10.9, 13.5))
+    seat.poll(SLOW, OPEN, 1000)
+    assert seat.told() == ("slow", "none")
+
+
+def test_the_supply_is_heard_and_a_brown_out_ends_the_drive(seat):
+    seat.poll(SLOW, OPEN, 100, motor(3.0, 13.5))
+    assert seat.poll(SLOW, OPEN, 1, motor(3.0, 5.5)) == [REST]
+    assert seat.told() == ("brown_out", "brown_out")
+
+
+def test_a_stalk_on_the_bus_goes_before_the_hand_at_this_end_once_it_was_heard(seat):
+    seat.poll(FAST, OPEN, 10)
+    assert seat.node.state.phase is Phase.FAST
+    seat.hear(stage=2)
+    seat.poll(FAST, OPEN, 5000)
+    assert seat.node.state.phase is Phase.SLOW_WAIT, "it has no timeout, so it holds"
+    seat.hear(stage=9)
+    seat.poll(FAST, OPEN, 10)
+    assert seat.node.state.phase is Phase.SLOW_WAIT, "a position that there is not is refused"
+
+
+def test_the_flick_button_is_heard_and_a_stalk_without_a_pause_has_the_first(seat):
+    seat.hear(stage=0, flick=True)
+    assert seat.poll(OFF, CLOSED)[-1] == RUN_FAST
+    reports: list[Report] = []
+    seat.node.report = reports.append
+    seat.hear(stage=1)
+    seat.poll(OFF, CLOSED)
+    assert reports[-1].stalk == Stalk(Master.INTERMITTENT, 1)
+
+
+def test_a_stalk_message_that_stays_away_too_long_is_reported_and_the_wiper_parks():
+    seat = Seat(stalk_timeout_ns=TIMEOUT_NS)
+    seat.hear(stage=2)
+    seat.poll(OFF, OPEN, 90)
+    assert seat.told() == ("slow", "none")
+    seat.poll(OFF, OPEN, 20)
+    assert seat.told() == ("wait", Fault.STALK_LOST.value)
+    seat.hear(stage=2)
+    seat.poll(OFF, OPEN, 1)
+    assert seat.told() == ("slow_wait", "none")
 
 
 def test_off_parks_by_the_inverted_contact_of_the_database(seat):
-    seat.poll(Stalk.FAST, OPEN, 500)
-    assert seat.poll(Stalk.OFF, OPEN)[0] == SLOW
-    assert OFF not in seat.poll(Stalk.OFF, OPEN, 200)
-    assert seat.poll(Stalk.OFF, CLOSED)[0] == OFF
+    seat.poll(FAST, OPEN, 500)
+    assert seat.poll(OFF, OPEN, 20) == [RUN_FAST], "the wait goes on at its speed"
+    assert REST not in seat.poll(OFF, OPEN, 200)
+    assert seat.poll(OFF, CLOSED)[0] == REST
 
 
 def test_release_sends_the_relays_off_whatever_was_due(seat):
-    seat.poll(Stalk.FAST, OPEN, 7)
+    seat.poll(FAST, OPEN, 7)
     seat.wire.sent.clear()
     seat.node.release()
-    assert seat.wire.sent == [OFF]
+    assert seat.wire.sent[0] == REST
+    assert [frame.identifier for frame in seat.wire.sent] == [256, 259]
 
 
 def test_the_loop_polls_by_its_clock_and_releases_the_relays_when_told_to_stop_or_broken_off(seat):
     reports: list[Report] = []
     seat.node.report = reports.append
     seat.wire.arriving = [Frame(512, OPEN)]
-    run_ecu(seat.node, lambda _: Stalk.SLOW, VirtualClock(), lambda: len(reports) == 20)
+    run_ecu(seat.node, lambda _: SLOW, VirtualClock(), lambda: len(reports) == 20, pause_ns=2 * MILLISECOND_NS)
     assert [round(report.time_s * 1000) for report in reports] == list(range(0, 40, 2))
-    assert seat.wire.sent[-2:] == [SLOW, OFF]
+    commands = [frame for frame in seat.wire.sent if frame.identifier == 256]
+    assert commands[-2:] == [RUN, REST]
 
     def breaks(_: float) -> Stalk:
         raise KeyboardInterrupt
@@ -177,7 +255,7 @@ def test_the_loop_polls_by_its_clock_and_releases_the_relays_when_told_to_stop_o
     seat.wire.sent.clear()
     with pytest.raises(KeyboardInterrupt):
         run_ecu(seat.node, breaks, VirtualClock(), lambda: False)
-    assert seat.wire.sent == [OFF]
+    assert seat.wire.sent[0] == REST
 
 
 def test_the_bench_says_how_often_the_ecu_decides(tmp_path, monkeypatch):
@@ -187,3 +265,13 @@ def test_the_bench_says_how_often_the_ecu_decides(tmp_path, monkeypatch):
     bench.write_text("extends: virtual.yaml\nname: test\necu: {period_ms: 40}\n")
     assert command.ecu_command(str(bench), 1.0, "0:off") == 0
     assert pauses == [40 * MILLISECOND_NS]
+
+
+@pytest.mark.parametrize(("stalk", "heard"), [("0:off", 0), (None, 1)])
+def test_a_written_stalk_goes_before_the_one_on_the_bus(monkeypatch, stalk, heard):
+    sides: list[EcuSide] = []
+    monkeypatch.setattr(command, "EcuNode", lambda side, *_: sides.append(side) or Seat().node)
+    monkeypatch.setattr(command, "run_ecu", lambda *_, pause_ns: None)
+    monkeypatch.setattr(command, "_source", lambda _: None)
+    command.ecu_command("virtual", 1.0, stalk)
+    assert len(sides[0].stalk) == heard

@@ -1,29 +1,43 @@
-"""The relay controller state by state, in virtual time, with a park contact that the test plays by hand."""
+"""What the controller makes of time: debounce, pauses, timeouts, counts and thresholds, to the poll."""
+
+import math
 
 import pytest
 
-from hilplant.ecu.relay_controller import RELAYS_OFF, Phase, Relays, Settings, Stalk, State, advance
+from hilplant.bench.ecu_description import ControllerSettings
+from hilplant.ecu.chart import Phase
+from hilplant.ecu.relay_controller import State, advance
+from hilplant.ecu.settings import controller_settings
+from hilplant.ecu.vocabulary import INTERVALS, RELAYS_OFF, Fault, Inputs, Master, Relays, Settings, Stalk
+from hilplant.signals import ECU_FAULTS, ECU_STATES, STALK_POSITIONS
 
-POLL_S = 0.005
-SETTINGS = Settings(pause_s=2.0, park_timeout_s=8.0, debounce_s=0.02)
-SLOW = Relays(on=True, fast=False)
-FAST = Relays(on=True, fast=True)
+POLL_S = 1.0 / 256.0  # sums of it are exact
+SETTINGS = Settings()
+OFF, SLOW, FAST = Stalk(), Stalk(Master.SLOW), Stalk(Master.FAST)
+DRIVE = Relays(on=True, fast=False)
 
 
 class Bench:
-    """Plays stalk and park contact to a controller and keeps its answers."""
+    """Plays inputs to a controller and keeps its answers."""
 
     def __init__(self) -> None:
-        self.state = State()
-        self.now_s = 0.0
-        self.relays = RELAYS_OFF
+        self.state, self.relays, self.fault, self.now_s = State(), RELAYS_OFF, Fault.NONE, 0.0
 
-    def play(self, seconds: float, stalk: Stalk, contact: bool | None) -> Relays:
-        """Hold stalk and contact for a while, at least for one poll."""
+    def play(self, seconds: float, stalk: Stalk, contact: bool | None, current_a=math.nan, supply_v=math.nan) -> Relays:
+        """Hold the inputs for a while, at least for one poll."""
         for _ in range(max(1, round(seconds / POLL_S))):
             self.now_s += POLL_S
-            self.state, self.relays = advance(self.state, stalk, contact, self.now_s, SETTINGS)
+            inputs = Inputs(stalk, contact, current_a, supply_v)
+            self.state, self.relays, self.fault = advance(self.state, inputs, self.now_s, SETTINGS)
         return self.relays
+
+    def until(self, condition, *inputs) -> float:
+        """Hold the inputs until the condition holds; return how long that took."""
+        begin_s = self.now_s
+        while not condition():
+            self.play(0.0, *inputs)
+            assert self.now_s - begin_s < 60.0
+        return self.now_s - begin_s
 
 
 @pytest.fixture
@@ -31,112 +45,145 @@ def bench() -> Bench:
     return Bench()
 
 
-@pytest.mark.parametrize("contact", [True, False, None])
-def test_it_begins_off_and_stays_off_wherever_the_wiper_stands(bench, contact):
-    assert bench.play(30.0, Stalk.OFF, contact) == RELAYS_OFF
+def test_the_names_on_the_bus_are_those_of_the_controller():
+    assert tuple(phase.value for phase in Phase) == ECU_STATES
+    assert tuple(fault.value for fault in Fault) == ECU_FAULTS
+    assert tuple(position.name.lower() for position in Master) == STALK_POSITIONS
+    assert [position.value for position in Master] == [0, 1, 2, 3], "Master_Input of Figure 8-7"
+
+
+def test_the_benchs_defaults_are_the_controllers():
+    assert set(ControllerSettings.model_fields) == set(Settings._fields)
+    assert controller_settings(ControllerSettings()) == Settings()
+
+
+@pytest.mark.parametrize("contact", [True, None])
+def test_it_begins_off_and_stays_off(bench, contact):
+    assert bench.play(30.0, OFF, contact) == RELAYS_OFF
     assert bench.state.phase is Phase.OFF
-
-
-def test_slow_and_fast_take_effect_at_once_in_both_directions(bench):
-    assert bench.play(0.0, Stalk.SLOW, True) == SLOW
-    assert bench.play(0.5, Stalk.SLOW, False) == SLOW
-    assert bench.play(0.0, Stalk.FAST, False) == FAST
-    assert bench.play(0.0, Stalk.SLOW, False) == SLOW
-
-
-def test_off_goes_on_slowly_until_the_park_contact_closes(bench):
-    bench.play(0.1, Stalk.FAST, True)
-    bench.play(0.5, Stalk.FAST, False)
-    assert bench.play(0.7, Stalk.OFF, False) == SLOW
-    assert bench.play(0.0, Stalk.OFF, True) == RELAYS_OFF
-    assert bench.play(5.0, Stalk.OFF, True) == RELAYS_OFF
+    assert bench.fault is Fault.NONE
 
 
 def test_off_while_the_wiper_is_still_in_the_park_window_makes_one_whole_turn(bench):
-    bench.play(0.05, Stalk.SLOW, True)
-    assert bench.play(0.05, Stalk.OFF, True) == SLOW
-    assert bench.play(1.0, Stalk.OFF, False) == SLOW
-    assert bench.play(0.0, Stalk.OFF, True) == RELAYS_OFF
+    bench.play(0.05, SLOW, True)
+    assert bench.play(0.05, OFF, True) == DRIVE
+    assert bench.play(1.0, OFF, False) == DRIVE
+    assert bench.play(0.0, OFF, True) == RELAYS_OFF
 
 
 def test_off_while_the_wiper_passes_park_makes_one_more_turn(bench):
-    bench.play(1.0, Stalk.SLOW, False)
-    bench.play(0.01, Stalk.SLOW, True)
-    assert bench.play(0.02, Stalk.OFF, True) == SLOW
-    bench.play(1.0, Stalk.OFF, False)
-    assert bench.play(0.0, Stalk.OFF, True) == RELAYS_OFF
+    bench.play(0.05, SLOW, True)
+    bench.play(1.0, SLOW, False)
+    bench.play(0.01, SLOW, True)
+    assert bench.play(0.02, OFF, True) == DRIVE
+    bench.play(1.0, OFF, False)
+    assert bench.play(0.0, OFF, True) == RELAYS_OFF
 
 
 def test_a_contact_that_bounces_as_it_opens_is_not_taken_for_park(bench):
-    bench.play(0.05, Stalk.SLOW, True)
-    bench.play(0.0, Stalk.OFF, True)
+    bench.play(0.05, SLOW, True)
+    bench.play(0.0, OFF, True)
     for contact in (False, True, False, True, False):
-        assert bench.play(0.0, Stalk.OFF, contact) == SLOW
-    bench.play(1.0, Stalk.OFF, False)
-    assert bench.play(0.0, Stalk.OFF, True) == RELAYS_OFF
-    assert bench.play(0.0, Stalk.OFF, False) == RELAYS_OFF
-    assert bench.play(1.0, Stalk.OFF, True) == RELAYS_OFF
+        assert bench.play(0.0, OFF, contact) == DRIVE
+    bench.play(1.0, OFF, False)
+    assert bench.play(0.0, OFF, True) == RELAYS_OFF
+    assert bench.play(0.0, OFF, False) == RELAYS_OFF, "nor is a bounce as it closes taken for standing off park"
+    assert bench.play(1.0, OFF, True) == RELAYS_OFF
 
 
-def test_moving_the_stalk_while_parking_drives_on(bench):
-    bench.play(0.5, Stalk.SLOW, False)
-    bench.play(0.2, Stalk.OFF, False)
-    assert bench.play(0.0, Stalk.FAST, False) == FAST
+@pytest.mark.parametrize("interval", INTERVALS)
+def test_each_pause_is_as_long_as_its_setting_to_the_poll_even_when_the_switch_is_moved_meanwhile(bench, interval):
+    stalk = Stalk(Master.INTERMITTENT, interval)
+    bench.play(0.05, stalk, True)
+    bench.play(1.0, stalk, False)
+    assert bench.play(0.0, stalk, True) == RELAYS_OFF
+    other = Stalk(Master.INTERMITTENT, 7 - interval)
+    took_s = bench.until(lambda: bench.relays.on, other, True)
+    assert took_s == pytest.approx(SETTINGS.pauses_s[interval - 1], abs=POLL_S)
 
 
-def test_intermittent_wipes_once_and_rests_for_the_pause(bench):
-    for _ in range(3):
-        assert bench.play(0.1, Stalk.INTERMITTENT, True) == SLOW
-        assert bench.play(1.4, Stalk.INTERMITTENT, False) == SLOW
-        assert bench.play(0.0, Stalk.INTERMITTENT, True) == RELAYS_OFF
-        assert bench.play(SETTINGS.pause_s - POLL_S, Stalk.INTERMITTENT, True) == RELAYS_OFF
-
-
-@pytest.mark.parametrize(("stalk", "relays"), [(Stalk.SLOW, SLOW), (Stalk.FAST, FAST), (Stalk.OFF, RELAYS_OFF)])
-def test_a_pause_ends_as_soon_as_the_stalk_moves(bench, stalk, relays):
-    bench.play(1.0, Stalk.INTERMITTENT, False)
-    assert bench.play(0.5, Stalk.INTERMITTENT, True) == RELAYS_OFF
-    assert bench.play(0.0, stalk, True) == relays
-
-
-@pytest.mark.parametrize("stalk", [Stalk.SLOW, Stalk.FAST, Stalk.INTERMITTENT, Stalk.OFF])
 @pytest.mark.parametrize("contact", [True, False])
-def test_a_park_contact_that_never_changes_ends_the_drive_in_a_fault(bench, stalk, contact):
-    bench.play(0.0, Stalk.SLOW, contact)
-    assert bench.play(SETTINGS.park_timeout_s - 0.1, stalk, contact).on
-    assert bench.play(0.2, stalk, contact) == RELAYS_OFF
-    assert bench.state.phase is Phase.FAULT
-    assert bench.play(60.0, stalk, contact) == RELAYS_OFF
+@pytest.mark.parametrize("moves", [(SLOW,), (SLOW, FAST, OFF)])
+def test_driving_without_park_ends_after_its_timeout_whatever_the_stalk_does(bench, contact, moves):
+    """A closed contact that never opens, and an open one that never closes."""
+    bench.play(0.0, SLOW, contact)
+    begin_s, number = bench.now_s, 0
+    while bench.relays.on:
+        number += 1
+        bench.play(0.0, moves[number % len(moves)], contact)
+        assert bench.now_s - begin_s < 60.0
+    limit_s = SETTINGS.leave_timeout_s if contact else SETTINGS.turn_timeout_s
+    assert bench.now_s - begin_s == pytest.approx(limit_s, abs=2 * POLL_S)
+    assert bench.fault is (Fault.PARK_NEVER_OPENS if contact else Fault.PARK_NEVER_CLOSES)
+
+
+def test_it_tries_three_times_with_a_pause_and_then_is_locked_out_until_the_stalk_is_put_off(bench):
+    bench.play(0.0, SLOW, True)
+    bench.play(0.1, SLOW, False)
+    starts = 1
+    for _ in range(round(60.0 / POLL_S)):
+        was_on = bench.relays.on
+        bench.play(0.0, SLOW, False)
+        starts += bench.relays.on and not was_on
+    assert starts == SETTINGS.tries
+    assert bench.state.phase is Phase.LOCKOUT
+    assert bench.play(30.0, FAST, False) == RELAYS_OFF
+    bench.play(0.0, OFF, False)
+    assert bench.until(lambda: bench.relays.on, SLOW, False) < 0.1
 
 
 def test_minutes_of_wiping_with_a_sound_park_switch_are_no_fault(bench):
     for _ in range(100):
-        bench.play(0.2, Stalk.SLOW, True)
-        assert bench.play(1.2, Stalk.SLOW, False) == SLOW
+        bench.play(0.2, SLOW, True)
+        assert bench.play(1.2, SLOW, False) == DRIVE
+    assert bench.fault is Fault.NONE
 
 
-def test_moving_the_stalk_after_a_fault_tries_again(bench):
-    bench.play(9.0, Stalk.SLOW, False)
-    assert bench.play(0.0, Stalk.OFF, False) == RELAYS_OFF
-    bench.play(0.0, Stalk.SLOW, False)
-    assert bench.play(0.0, Stalk.SLOW, False) == SLOW
+def test_a_high_current_is_a_stall_only_when_it_stays(bench):
+    bench.play(0.1, SLOW, True, current_a=20.0)
+    bench.play(0.1, SLOW, False, current_a=3.0)
+    assert bench.play(SETTINGS.stall_s - POLL_S, SLOW, False, current_a=SETTINGS.stall_current_a + 0.1).on
+    bench.play(0.0, SLOW, False, current_a=3.0)
+    assert bench.play(3.0, SLOW, False, current_a=SETTINGS.stall_current_a).on
+    took_s = bench.until(lambda: not bench.relays.on, SLOW, False, -11.0)
+    assert took_s == pytest.approx(SETTINGS.stall_s, abs=2 * POLL_S), "the sign does not matter"
+    assert bench.fault is Fault.STALL
 
 
-def test_a_silent_park_switch_releases_the_relays_at_once_and_slow_resumes_with_it(bench):
-    bench.play(0.5, Stalk.SLOW, False)
-    assert bench.play(0.0, Stalk.SLOW, None) == RELAYS_OFF
-    assert bench.play(20.0, Stalk.SLOW, None) == RELAYS_OFF
-    assert bench.play(0.0, Stalk.SLOW, False) == SLOW
+def test_a_fault_is_reported_until_a_sound_turn_or_a_rest_in_park(bench):
+    bench.play(0.05, SLOW, True)
+    bench.play(0.05, SLOW, None)
+    assert bench.fault is Fault.PARK_UNKNOWN
+    bench.play(1.0, SLOW, False)
+    assert bench.fault is Fault.PARK_UNKNOWN
+    bench.play(0.0, SLOW, True)
+    assert bench.fault is Fault.NONE
+    bench.play(0.05, SLOW, None)
+    bench.play(SETTINGS.settle_s - 4 * POLL_S, OFF, True)
+    assert bench.fault is Fault.PARK_UNKNOWN
+    bench.play(8 * POLL_S, OFF, True)
+    assert bench.fault is Fault.NONE
 
 
-def test_a_wiper_left_on_the_screen_by_a_silent_park_switch_is_parked_when_it_speaks_again(bench):
-    bench.play(0.5, Stalk.SLOW, False)
-    bench.play(0.5, Stalk.OFF, None)
-    assert bench.play(0.5, Stalk.OFF, False) == SLOW
-    assert bench.play(0.0, Stalk.OFF, True) == RELAYS_OFF
+def test_a_supply_that_comes_back_is_trusted_only_after_a_while_above_the_higher_threshold(bench):
+    bench.play(0.1, SLOW, True, 3.0, 13.5)
+    bench.play(0.3, SLOW, False, 3.0, 13.5)
+    assert not bench.play(0.0, SLOW, False, 3.0, SETTINGS.brown_out_v - 0.1).on
+    assert not bench.play(5.0, SLOW, False, 3.0, SETTINGS.resume_v - 0.1).on
+    assert not bench.play(SETTINGS.resume_s - POLL_S, SLOW, False, 3.0, SETTINGS.resume_v).on
+    assert not bench.play(0.0, SLOW, False, 3.0, SETTINGS.resume_v - 0.1).on
+    took_s = bench.until(lambda: bench.relays.on, SLOW, False, 3.0, SETTINGS.resume_v)
+    assert took_s == pytest.approx(SETTINGS.resume_s, abs=2 * POLL_S)
 
 
-def test_a_wiper_that_stands_in_park_after_the_silence_stays_there(bench):
-    bench.play(0.5, Stalk.SLOW, False)
-    bench.play(0.5, Stalk.OFF, None)
-    assert bench.play(1.0, Stalk.OFF, True) == RELAYS_OFF
+def test_unknown_current_and_supply_are_neither_stall_nor_brown_out(bench):
+    bench.play(0.1, SLOW, True)
+    assert bench.play(3.0, SLOW, False) == DRIVE
+
+
+def test_a_silent_park_switch_releases_the_relays_at_once_and_the_wiper_is_parked_when_it_speaks(bench):
+    bench.play(0.1, SLOW, True)
+    bench.play(0.5, SLOW, False)
+    assert bench.play(20.0, SLOW, None) == RELAYS_OFF
+    assert bench.play(0.5, OFF, False) == DRIVE
+    assert bench.play(0.0, OFF, True) == RELAYS_OFF

@@ -1,27 +1,46 @@
-"""Stalk sequences: what can be written, what is refused and how, and what a terminal may type."""
+"""The driver's hand: what can be written, what is refused and how, and what a terminal may type."""
 
 import os
 
 import pytest
 
-from hilplant.ecu.relay_controller import Stalk
-from hilplant.ecu.stalk import StalkError, Turn, TypedStalk, parse_stalk, stalk_at
+from hilplant.ecu.stalk import PRESSES_S, StalkError, TypedStalk, move_named, parse_stalk, stalk_at, stalk_words
+from hilplant.ecu.vocabulary import Master, Stalk
 
 
 def test_a_sequence_is_read_in_order_with_names_or_their_beginnings():
-    turns = parse_stalk("0:off, 1.5:slow,6:F,11:intermittent")
-    assert turns == (
-        Turn(0.0, Stalk.OFF),
-        Turn(1.5, Stalk.SLOW),
-        Turn(6.0, Stalk.FAST),
-        Turn(11.0, Stalk.INTERMITTENT),
-    )
+    turns = parse_stalk("0:off, 1.5:slow,6:F,11:intermittent,12:i3,13:5,14:fl,15:wash")
+    moves = [(turn.time_s, *turn.move) for turn in turns]
+    assert moves == [
+        (0.0, Master.OFF, None, None),
+        (1.5, Master.SLOW, None, None),
+        (6.0, Master.FAST, None, None),
+        (11.0, Master.INTERMITTENT, None, None),
+        (12.0, Master.INTERMITTENT, 3, None),
+        (13.0, None, 5, None),
+        (14.0, None, None, "flick"),
+        (15.0, None, None, "wash"),
+    ]
 
 
 def test_a_position_holds_until_the_next_and_is_off_before_the_first():
     turns = parse_stalk("1:slow,6:fast")
-    positions = [stalk_at(turns, elapsed_s) for elapsed_s in (0.0, 0.999, 1.0, 5.9, 6.0, 1e9)]
-    assert positions == [Stalk.OFF, Stalk.OFF, Stalk.SLOW, Stalk.SLOW, Stalk.FAST, Stalk.FAST]
+    positions = [stalk_at(turns, elapsed_s).master for elapsed_s in (0.0, 0.999, 1.0, 5.9, 6.0, 1e9)]
+    assert positions == [Master.OFF, Master.OFF, Master.SLOW, Master.SLOW, Master.FAST, Master.FAST]
+
+
+def test_the_pause_stays_chosen_whatever_the_position_does():
+    turns = parse_stalk("1:i4,2:slow,3:intermittent,4:2")
+    assert [stalk_at(turns, at_s).interval for at_s in (0.5, 1.5, 2.5, 3.5, 4.5)] == [1, 4, 4, 4, 2]
+    assert stalk_at(turns, 4.5).master is Master.INTERMITTENT
+
+
+@pytest.mark.parametrize("word", ["flick", "wash"])
+def test_a_button_is_pressed_for_its_time_and_moves_nothing_else(word):
+    turns = parse_stalk(f"0:i2,1:{word},1.1:slow")
+    pressed = [getattr(stalk_at(turns, 1.0 + after_s), word) for after_s in (-0.01, 0.0, 0.2, PRESSES_S[word])]
+    assert pressed == [False, True, True, False]
+    assert stalk_at(turns, 1.05)._replace(flick=False, wash=False) == Stalk(Master.INTERMITTENT, 2)
 
 
 @pytest.mark.parametrize(
@@ -34,9 +53,14 @@ def test_a_position_holds_until_the_next_and_is_off_before_the_first():
         ("inf:slow", "write SECONDS:POSITION"),
         ("nan:slow", "write SECONDS:POSITION"),
         ("0:slow,", "entry 2 ''"),
-        ("0:slow,1:quick", "entry 2 '1:quick': position must be one of off, slow, fast, intermittent"),
+        ("0:slow,1:quick", "entry 2 '1:quick': position must be one of off, intermittent, slow, fast, flick, wash"),
         ("0:", "position must be one of"),
         ("0:slow:fast", "position must be one of"),
+        ("0:slow3", "intermittent with a pause from 1 to 6"),
+        ("0:flick3", "position must be one of"),
+        ("0:i0", "position must be one of"),
+        ("0:i7", "position must be one of"),
+        ("0:i12", "position must be one of"),
         ("2:slow,2:fast", "entry 2 '2:fast': time must be later than 2 s"),
     ],
 )
@@ -51,15 +75,24 @@ def test_typed_lines_move_the_stalk_and_nonsense_is_answered_without_moving_it()
     reader, writer = os.pipe()
     answers: list[str] = []
     stalk = TypedStalk(reader, answers.append)
-    assert stalk(0.0) is Stalk.OFF
+    assert stalk(0.0) == Stalk()
     os.write(writer, b"s\n")
-    assert stalk(1.0) is Stalk.SLOW
+    assert stalk(1.0) == Stalk(Master.SLOW)
     os.write(writer, b"quick\n")
-    assert stalk(2.0) is Stalk.SLOW
-    os.write(writer, b"Fast\nint\n")
-    assert stalk(3.0) is Stalk.INTERMITTENT
+    assert stalk(2.0) == Stalk(Master.SLOW)
+    os.write(writer, b"Fast\ni3\nflick\n")
+    assert stalk(3.0) == Stalk(Master.INTERMITTENT, 3, flick=True)
     os.close(writer)
-    assert stalk(4.0) is Stalk.INTERMITTENT
-    assert stalk(5.0) is Stalk.INTERMITTENT
+    assert stalk(4.0) == Stalk(Master.INTERMITTENT, 3)
+    assert stalk(5.0) == Stalk(Master.INTERMITTENT, 3)
     os.close(reader)
-    assert answers[1].startswith("stalk: type off, slow")
+    assert answers == ["stalk: slow", answers[1], "stalk: fast", "stalk: intermittent 3", "stalk: flick"]
+    assert answers[1].startswith("stalk: type one of off, ")
+
+
+@pytest.mark.parametrize("stalk", [Stalk(), Stalk(Master.FAST), Stalk(Master.INTERMITTENT, 6)])
+def test_the_words_for_a_stalk_are_words_for_a_move_there(stalk):
+    move = move_named(stalk_words(stalk).replace(" ", ""))
+    assert move is not None
+    assert (move.master, move.interval or 1) == (stalk.master, stalk.interval)
+    assert stalk_words(stalk._replace(flick=True, wash=True)).endswith(" + flick + wash")

@@ -148,6 +148,15 @@ def plant_frames(vcan: str) -> Iterator[Candump]:
 
 
 @pytest.fixture
+def ecu_frames(vcan: str) -> Iterator[Candump]:
+    """What the ECU sends from here on, and of the plant the park switch and the linkage."""
+    filters = ("120:7FF", "130:7FF", "201:7FF", "202:7FF")
+    listener = listening(vcan, *filters, mark="202#0000000000000000")
+    yield listener
+    listener.close()
+
+
+@pytest.fixture
 def cansend(vcan: str) -> Callable[[str], None]:
     """Send one frame, written as for cansend: `123#1122`, FD `123##0112233`, remote `123#R`."""
 
