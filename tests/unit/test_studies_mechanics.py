@@ -1,0 +1,99 @@
+"""The studies of the mechanics: the source's checks hold, the wiping table adds up, and pictures are drawn."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from hilplant.bench import load_bench
+from hilplant.cli import app
+from hilplant.failure import Failure
+from hilplant.models.tables import GRAVITY
+from hilplant.studies.crank_torque import WETNESS, Conditions, crank_torque
+from hilplant.studies.mechanics_plots import plot_conditions, plot_torque
+from hilplant.studies.thesis_checks import Check, thesis_checks
+from hilplant.studies.whole_system import five_wipes
+from hilplant.studies.wiping import demands, wiping
+from hilplant.units import TURN_RAD
+
+BENCH = load_bench("default")
+
+
+@pytest.fixture(scope="module")
+def checks() -> list[Check]:
+    return thesis_checks(BENCH)
+
+
+def test_every_check_of_the_source_holds(checks: list[Check]) -> None:
+    assert [check for check in checks if not check.holds] == []
+    assert {check.where for check in checks} >= {"Table 3-1", "Figure 3-17", "Figure 3-22", "Figure 4-32", "Table 5-4"}
+
+
+def test_the_measured_row_that_does_not_fit_is_shown_and_named(checks: list[Check]) -> None:
+    (named,) = [check for check in checks if "left out" in check.what]
+    assert "slow, 14 V" in named.what
+    assert "+11." in named.ours
+
+
+def test_a_slow_even_turn_against_gravity_alone_is_gravity_alone() -> None:
+    """Without force on the screen, at a speed at which M' does nothing, the torque is the table's gravity."""
+    bench = load_bench("default")
+    bench.input_row[:] = _without_force(bench.input_row)
+    knots = np.linspace(0.0, TURN_RAD, len(bench.tables))[:-1]
+    torque = crank_torque(bench, knots, 1e-9, Conditions(WETNESS["dry"]))
+    assert torque == pytest.approx(bench.tables[:-1, GRAVITY, 0], abs=1e-12)
+
+
+def _without_force(row: np.ndarray) -> np.ndarray:
+    from hilplant.signals import INPUT_INDEX
+
+    changed = row.copy()
+    changed[[INPUT_INDEX["left_force"], INPUT_INDEX["right_force"]]] = 0.0
+    return changed
+
+
+def test_drag_takes_from_the_forward_wipe_what_it_adds_to_the_reverse_one() -> None:
+    """Over a whole turn a constant drag does no work, so the mean torque changes by friction alone."""
+    still, _, fast, *_ = five_wipes(BENCH)
+    assert fast.forward_n_m < still.forward_n_m
+    assert fast.reverse_n_m > still.reverse_n_m
+    rise = fast.reverse_n_m - still.reverse_n_m
+    fall = still.forward_n_m - fast.forward_n_m
+    assert fall == pytest.approx(rise, rel=0.25)
+
+
+def test_the_wiper_is_faster_on_more_volts_on_wet_glass_and_on_the_fast_brush() -> None:
+    rows = {(row.supply_v, row.screen, row.stage): row for row in wiping(BENCH, (12.0, 13.5))}
+    cycles = {case: row.cycles_per_minute for case, row in rows.items()}
+    assert all(cycles[13.5, screen, stage] > cycles[12.0, screen, stage] for _, screen, stage in rows)
+    assert all(cycles[supply, "wet", stage] > cycles[supply, "dry", stage] for supply, _, stage in rows)
+    assert all(cycles[supply, screen, "fast"] > cycles[supply, screen, "slow"] for supply, screen, _ in rows)
+    assert all(row.peak_current_a > row.mean_current_a > 0.0 for row in rows.values())
+    fast, slow, apart = demands(list(rows.values()), 13.5)
+    assert (fast.met, slow.met, apart.met) == (True, True, False)
+    assert apart.found == pytest.approx(fast.found - slow.found)
+
+
+def test_a_wiper_that_stands_makes_no_cycles(tmp_path: Path) -> None:
+    rows = wiping(BENCH, (1.0,))
+    assert [row.cycles_per_minute for row in rows if row.screen == "dry"] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("draw", [plot_torque, plot_conditions])
+def test_pictures_are_drawn_and_a_place_that_does_not_exist_is_told(draw, tmp_path: Path) -> None:  # type: ignore[no-untyped-def]
+    draw(BENCH, tmp_path / "picture.png")
+    assert (tmp_path / "picture.png").read_bytes().startswith(b"\x89PNG")
+    with pytest.raises(Failure, match="cannot be written"):
+        draw(BENCH, tmp_path / "nowhere" / "picture.png")
+
+
+def test_the_commands_print_tables_and_write_figures(tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, ["study", "thesis", "--json", str(tmp_path / "thesis.json")])
+    assert done.exit_code == 0, done.output
+    assert "Table 5-4" in done.output
+    assert json.loads((tmp_path / "thesis.json").read_text())["failed"] == 0
+    done = CliRunner().invoke(app, ["plot", "positions", "default", str(tmp_path / "wiper.png")])
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / "wiper.png").stat().st_size > 10_000
