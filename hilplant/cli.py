@@ -1,14 +1,15 @@
 """The command line: one thin function for each sub-command; what they do lives in the rooms they call."""
 
-import json
 import re
 import sys
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
+from hilplant.cli_options import DEFAULT, BenchName, Channel, JsonFile, Seconds, claim, flat, write_json
+from hilplant.cli_studies import plot_app, study_app
 from hilplant.failure import Failure
 
 app = typer.Typer(
@@ -22,14 +23,8 @@ app = typer.Typer(
     epilog="An expected failure is one line; with --debug anywhere, where it came from is shown too.",
 )
 
-BenchName = Annotated[str, typer.Argument(help="a bench file, or the name of a shipped bench", metavar="BENCH")]
-Seconds = Annotated[
-    float | None, typer.Option(min=0.001, max=1e9, help="end after this time; without it, on Ctrl-C or SIGTERM")
-]
-JsonFile = Annotated[Path | None, typer.Option("--json", help="write the figures to this file")]
-Channel = Annotated[str | None, typer.Option(help="use this channel instead of the bench's, such as can0")]
-
-DEFAULT = "default"
+app.add_typer(plot_app, name="plot")
+app.add_typer(study_app, name="study")
 
 
 @app.command(epilog="Example: hilplant demo --seconds 12 --out demo")
@@ -60,43 +55,68 @@ def run(
     """
     from hilplant.daemon import run_daemon
 
-    _claim(json_file)
+    claim(json_file)
     summary = run_daemon(bench, seconds, record, channel)
     missing = " | ".join(f"{given.name}: {given.mend}" for given in summary.privileges if not given.granted)
-    _write_json(json_file, _flat(asdict(summary) | {"privileges": {"missing": missing}}))
+    write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))
     raise typer.Exit(1 if summary.stopped_by_overrun or not summary.recording_complete else 0)
 
 
-@app.command(epilog='Example: hilplant ecu default --stalk "0:off,1:slow,6:fast,11:off"')
+@app.command(epilog='Example: hilplant ecu default --stalk "0:off,1:slow,6:fast,11:i3,30:off,33:flick"')
 def ecu(
     bench: BenchName = DEFAULT,
     seconds: Seconds = None,
-    stalk: Annotated[str | None, typer.Option(help="positions of the stalk by time [s]: TIME:POSITION,...")] = None,
+    stalk: Annotated[str | None, typer.Option(help="movements of the stalk by time [s]: TIME:POSITION,...")] = None,
     channel: Channel = None,
+    chart: Annotated[bool, typer.Option("--chart", help="print the controller's states as a Mermaid diagram")] = False,
 ) -> None:
     """Be the stand-in relay ECU, a CAN node of its own.
 
-    The stalk has off, slow, fast and intermittent; off parks. Without --stalk it is read from standard input.
+    The stalk has off, intermittent (1 to 6), slow, fast, flick and wash; off parks. It is what --stalk says, else what
+    the bench's stalk message says once one has come, else what is typed.
     """
+    if chart:
+        from hilplant.ecu.mermaid import chart_text
+
+        typer.echo(chart_text())
+        raise typer.Exit()
     from hilplant.ecu.command import ecu_command
 
     raise typer.Exit(ecu_command(bench, seconds, stalk, channel))
+
+
+@app.command(epilog="Example: hilplant control default --controller cascade --reference 0:3.14,10:3.77")
+def control(
+    bench: BenchName = DEFAULT,
+    controller: Annotated[str, typer.Option(help="name of the controller; a wrong one lists all")] = "cascade",
+    reference: Annotated[str, typer.Option(help="wanted crank speed: RAD_S, or TIME:RAD_S,...")] = "3.14",
+    seconds: Seconds = None,
+    channel: Channel = None,
+) -> None:
+    """Be a velocity controller, a CAN node of its own.
+
+    It commands the supply voltage and both relays, and ticks with the plant's speed message. With _sensorless behind
+    its name, as in pid_sensorless, a controller uses voltage, current and park switch only.
+    """
+    from hilplant.ecu.velocity_command import control_command
+
+    raise typer.Exit(control_command(bench, controller, reference, seconds, channel))
 
 
 @app.command(epilog="Example: hilplant check my_bench.yaml")
 def check(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
     """Say all that is wrong with a bench, with file and line.
 
-    Exit code 0 when nothing is wrong, else 1.
+    When nothing is, say what the bench amounts to. Exit code 0 when nothing is wrong, else 1.
     """
-    from hilplant.bench import check_bench
+    from hilplant.bench.verdict import verdict_on
 
-    problems = check_bench(bench)
-    for problem in problems:
-        typer.echo(str(problem), err=True)
-    typer.echo(f"{bench}: {len(problems)} problem(s)" if problems else f"{bench}: nothing is wrong")
-    _write_json(json_file, {"problems": len(problems), "messages": [str(problem) for problem in problems]})
-    raise typer.Exit(1 if problems else 0)
+    found = verdict_on(bench)
+    for problem in found.problems:
+        typer.echo(problem, err=True)
+    typer.echo("\n".join(found.lines))
+    write_json(json_file, found.figures)
+    raise typer.Exit(1 if found.problems else 0)
 
 
 @app.command(epilog="Example: hilplant simulate default slow_fast_park --out wipe.csv")
@@ -128,7 +148,7 @@ def replay(recording: Path, json_file: JsonFile = None) -> None:
 
     result = replay_recording(recording)
     typer.echo(str(result))
-    _write_json(json_file, _flat(asdict(result)))
+    write_json(json_file, flat(asdict(result)))
     raise typer.Exit(0 if result.equal else 1)
 
 
@@ -138,15 +158,6 @@ def export(recording: Path, out: Path) -> None:
     from hilplant.recording.export import export as export_recording
 
     typer.echo(export_recording(recording, out))
-
-
-@app.command(epilog="Example: hilplant plot run.hilrec run.png")
-def plot(recording: Path, out: Path) -> None:
-    """Draw a recording: voltage, current, speed, arms, switches."""
-    from hilplant.recording.plot import plot_recording
-
-    plot_recording(recording, out)
-    typer.echo(f"{out} written")
 
 
 @app.command(epilog="Example: hilplant perf --json perf.json")
@@ -160,8 +171,8 @@ def perf(
     """
     from hilplant.benchmarks.perf import measure_and_print
 
-    _claim(json_file)
-    _write_json(json_file, measure_and_print(only))
+    claim(json_file)
+    write_json(json_file, measure_and_print(only))
 
 
 @app.command(epilog="Example: hilplant doctor")
@@ -174,7 +185,7 @@ def doctor(json_file: JsonFile = None) -> None:
 
     findings = examine()
     print_findings(findings)
-    _write_json(json_file, {re.sub(r"\W+", "_", finding.name).lower(): finding.state for finding in findings})
+    write_json(json_file, {re.sub(r"\W+", "_", finding.name).lower(): finding.state for finding in findings})
 
 
 @app.command(
@@ -191,33 +202,45 @@ def vcan(command: list[str]) -> None:
     raise typer.Exit(run_with_vcan(command, limit_s=0.0))
 
 
-def _flat(record: dict[str, Any]) -> dict[str, Any]:
-    """Lift nested figures to the top, as `outer_inner`."""
-    flat: dict[str, Any] = {}
-    for key, value in record.items():
-        if isinstance(value, dict):
-            flat.update({f"{key}_{inner}": figure for inner, figure in value.items()})
-        else:
-            flat[key] = value
-    return flat
+@app.command(epilog='Example: hilplant inspect rig.csv --columns "voltage=U1,current=I1[mA],park=PS"')
+def inspect(  # noqa: PLR0913, PLR0917
+    data: Path,
+    columns: Annotated[str, typer.Option(help="role=NAME[unit],...: time, voltage, current, park, fast, on")] = "",
+    frames: Annotated[str | None, typer.Option(help="bus database, or bench, that reads a log of CAN frames")] = None,
+    mode: Annotated[str | None, typer.Option(help="slow or fast, where no column says it")] = None,
+    gear_ratio: Annotated[float, typer.Option(min=1.0, help="turns of the motor in one turn of the crank")] = 63.0,
+    json_file: JsonFile = None,
+) -> None:
+    """Say what is wrong with a measurement, what was done to it, and what motor it shows.
+
+    Exit code 0 when it will do for identification, else 1.
+    """
+    from hilplant.identify.command import Wish, inspect_data
+
+    claim(json_file)
+    good, figures = inspect_data(Wish(data, columns, frames, mode, gear_ratio))
+    write_json(json_file, figures)
+    raise typer.Exit(0 if good else 1)
 
 
-def _claim(path: Path | None) -> None:
-    """Refuse a file that cannot be written before something long begins."""
-    if path is not None:
-        _write(path, "")
+@app.command(epilog="Example: hilplant sequence default --out sequence.yaml")
+def sequence(
+    bench: BenchName = DEFAULT,
+    out: Annotated[Path | None, typer.Option(help="write it as a scenario, timed by this bench's plant")] = None,
+    kind: Annotated[str, typer.Option(help="informative or figure-5-4")] = "informative",
+    volts: Annotated[str, typer.Option(help="voltages [V] with commas between")] = "10,12,14,16",
+    channel: Channel = None,
+) -> None:
+    """Play a test sequence for identification: on the bench's bus, or with --out into a scenario.
 
+    On the bus it commands relays and supply of a real rig and steps on at the park edges.
+    """
+    from hilplant.identify.sequence_runs import play_on_bus, stages_of, write_scenario
 
-def _write_json(path: Path | None, figures: dict[str, Any]) -> None:
-    if path is not None:
-        _write(path, json.dumps(figures, indent=2, default=str) + "\n")
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise Failure(f"{path}: cannot be written ({error.strerror})") from error
+    if out is None:
+        play_on_bus(bench, stages_of(kind, volts), channel, typer.echo)
+    else:
+        typer.echo(write_scenario(bench, stages_of(kind, volts), out))
 
 
 def main() -> None:

@@ -37,6 +37,6 @@ def crank_torque(bench: Bench, crank_rad: Floats, crank_speed_rad_s: float, cond
 
 def _torque(bench: Bench, crank_angle_rad: float, crank_speed_rad_s: float, inputs: Inputs) -> float:
     crank = Crank(bench.tables, find(bench.tables, crank_angle_rad), crank_angle_rad, crank_speed_rad_s)
-    found = resist(crank, bench.parameters.load, inputs)
+    found = resist(crank, bench.parameters, inputs)
     direction = 1.0 if crank_speed_rad_s > 0.0 else -1.0
     return float(found.bias + direction * (found.dry + found.slope * abs(crank_speed_rad_s)))

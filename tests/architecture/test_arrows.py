@@ -19,7 +19,10 @@ ARROWS: dict[str, set[str]] = {
     "doctor": {"jit"},
 }
 #: The stand-in ECU decides without knowing that there is a bus, a bench or a clock.
-PURE_ECU = {"ecu/relay_controller.py", "ecu/stalk.py"}
+PURE_ECU = {
+    f"ecu/{name}.py"
+    for name in ("chart", "conditions", "mermaid", "relay_controller", "sensing", "stalk", "vocabulary")
+}
 #: The only files that open a CAN bus or read and write a CAN log.
 CAN_FILES = {"bus/transport.py", "bus/socketcan.py", "recording/frame_logs.py", "doctor/can_bus.py"}
 #: Of the time module. The loop's clock is one file; the others are start-up, other processes and tools.

@@ -10,7 +10,7 @@ MOST_FUNCTION_LINES = 60
 BANNED = {"utils", "util", "manager", "handler", "process", "helper", "helpers", "misc", "common"}
 STATUSES = {"measured", "identified", "published", "assumed"}
 #: Folders of config/ whose files are parameter sets.
-PARAMETER_SETS = ("motors", "linkages", "screens")
+PARAMETER_SETS = ("motors", "linkages", "screens", "measurements")
 #: Folders of config/ whose files say what to do, not what a thing is like.
 DESCRIPTIONS = ("benches", "scenarios")
 

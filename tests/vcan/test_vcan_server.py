@@ -263,7 +263,7 @@ FLOOD = """
 import random, socket, struct, sys
 
 source = random.Random(7)
-lengths = {0x120: 2, 0x121: 2, 0x122: 3}
+lengths = {0x120: 2, 0x121: 2, 0x122: 3, 0x123: 8}
 
 
 def random_frame():
@@ -281,7 +281,8 @@ def random_frame():
     length, data = source.randrange(9), source.randbytes(8)
     valid = lengths.get(can_id) == length
     valid = valid and (can_id != 0x121 or data[0] + 256 * data[1] <= 40_000)
-    valid = valid and (can_id != 0x122 or (data[0] & 3 < 2 and data[1] + 256 * data[2] <= 10_000))
+    valid = valid and (can_id != 0x122 or (data[0] & 3 < 3 and data[1] + 256 * data[2] <= 10_000))
+    valid = valid and (can_id != 0x123 or all(-100 <= raw <= 100 for raw in struct.unpack("=bb6x", data)))
     return struct.pack("=IB3x8s", can_id, length, data), valid
 
 
@@ -311,7 +312,7 @@ def test_a_flood_of_a_million_random_frames_leaves_the_loop_running(
     plant_frames.lines.clear()
     cansend("121#BC34")  # 13.5 V, whatever the flood left
     cansend(SLOW)
-    plant_frames.wait_for("BC34")  # as the terminal voltage of MotorStatus
+    plant_frames.wait_for("5E1A")  # as the terminal voltage of MotorStatus
     assert server.end(patience_s=PATIENCE_S) == 0
     figures = json.loads((tmp_path / "run.json").read_text())
     causes = ("unknown_frame", "wrong_length", "remote_frame", "fd_frame", "error_frame", "out_of_range")

@@ -1,0 +1,144 @@
+"""The command line of what is drawn and studied: `hilplant plot ...` and `hilplant study ...`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hilplant.cli_options import DEFAULT, BenchName, JsonFile, claim, write_json
+
+plot_app = typer.Typer(
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    help="Draw a recording, or what a bench is made of, as a PNG picture.",
+    epilog="Example: hilplant plot positions default wiper.png",
+)
+study_app = typer.Typer(
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    help="Run the source's experiments again and print them beside its tables.",
+    epilog="Example: hilplant study control --out study",
+)
+
+
+@study_app.command("control", epilog="Example: hilplant study control --out study --json study.json")
+def study_control(
+    bench: BenchName = DEFAULT,
+    out: Annotated[Path | None, typer.Option(help="folder for the pictures")] = None,
+    search: Annotated[bool, typer.Option("--search", help="search better gains instead; takes minutes")] = False,
+    json_file: JsonFile = None,
+) -> None:
+    """Put all velocity controllers through the test of section 7.2.
+
+    With the speed sensor and without it, and through an hour of rain.
+    """
+    from hilplant.studies.control_command import control_study
+
+    claim(json_file)
+    write_json(json_file, control_study(bench, out, search))
+
+
+@study_app.command("identification", epilog="Example: hilplant study identification --json study.json")
+def study_identification(json_file: JsonFile = None) -> None:
+    """Compute Tables 5-2 to 5-5 again, each printed number beside ours.
+
+    Exit code 1 when one is neither reached nor explained by rounding.
+    """
+    from hilplant.identify.published import as_table, figures, published_lines
+
+    lines = published_lines()
+    typer.echo(as_table(lines))
+    write_json(json_file, figures(lines))
+    raise typer.Exit(1 if any(line.agrees == "no" for line in lines) else 0)
+
+
+@study_app.command("thesis", epilog="Example: hilplant study thesis")
+def study_thesis(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
+    """Run the source's own checks of motor, park circuits and mechanics.
+
+    Exit code 1 when one does not hold.
+    """
+    from hilplant.studies.mechanics_command import thesis_study
+
+    claim(json_file)
+    figures, holds = thesis_study(bench)
+    write_json(json_file, figures)
+    raise typer.Exit(0 if holds else 1)
+
+
+@study_app.command("solver", epilog="Example: hilplant study solver default")
+def study_solver(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
+    """Hold the step against an adaptive solver of the same equations.
+
+    Start, wet and dry, brown-out, stall, reverse, park, wind. Exit code 1 when an error is above 0.5 % of range.
+    """
+    from hilplant.studies.mechanics_command import solver_study
+
+    claim(json_file)
+    figures, within = solver_study(bench)
+    write_json(json_file, figures)
+    raise typer.Exit(0 if within else 1)
+
+
+@study_app.command("wiping", epilog="Example: hilplant study wiping default")
+def study_wiping(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
+    """Tell cycles a minute and currents from 9 to 16 V, dry and wet.
+
+    With the three figures of FMVSS 104 beside them.
+    """
+    from hilplant.studies.mechanics_command import wiping_study
+
+    claim(json_file)
+    write_json(json_file, wiping_study(bench))
+
+
+@plot_app.command("recording", epilog="Example: hilplant plot recording run.hilrec run.png")
+def plot_recording(recording: Path, out: Path) -> None:
+    """Draw a recording: voltage, current, speed, arms, switches."""
+    from hilplant.recording.plot import plot_recording as draw
+
+    draw(recording, out)
+    typer.echo(f"{out} written")
+
+
+@plot_app.command("positions", epilog="Example: hilplant plot positions default wiper.png")
+def plot_positions(bench: BenchName, out: Path) -> None:
+    """Draw linkage, arms and blades in four positions."""
+    from hilplant.bench import load_bench
+    from hilplant.studies.positions_plot import plot_positions as draw
+
+    loaded = load_bench(bench)
+    draw(loaded.plant.mechanics.wiper, out, f"{loaded.name}: {loaded.plant.mechanics.written.name}")
+    typer.echo(f"{out} written")
+
+
+@plot_app.command("torque", epilog="Example: hilplant plot torque default torque.png")
+def plot_torque(bench: BenchName, out: Path) -> None:
+    """Draw the torque over the crank angle, dry, tacky and wet."""
+    from hilplant.bench import load_bench
+    from hilplant.studies.mechanics_plots import plot_torque as draw
+
+    draw(load_bench(bench), out)
+    typer.echo(f"{out} written")
+
+
+@plot_app.command("conditions", epilog="Example: hilplant plot conditions default conditions.png")
+def plot_conditions(bench: BenchName, out: Path) -> None:
+    """Draw the torque of five wipes, wet, in wind, and dry.
+
+    That is the test of section 4.6.
+    """
+    from hilplant.bench import load_bench
+    from hilplant.studies.mechanics_plots import plot_conditions as draw
+
+    draw(load_bench(bench), out)
+    typer.echo(f"{out} written")
+
+
+@plot_app.command("park", epilog="Example: hilplant plot park park.png")
+def plot_park(out: Path) -> None:
+    """Draw slow, fast, off with the three park circuits."""
+    from hilplant.studies.park_plot import plot_park_sequences
+
+    plot_park_sequences(out)
+    typer.echo(f"{out} written")

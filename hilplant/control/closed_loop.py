@@ -1,0 +1,92 @@
+"""Plant and velocity controller in one compiled loop: the step of the server, its supply commanded by a controller."""
+
+from typing import Any
+
+from hilplant.control.controller import Tables, control
+from hilplant.control.observer import correct, learn_resistance, predict
+from hilplant.control.records import AT_REST, Controller, Estimate, Measured, Memory, Model
+from hilplant.jit import compiled
+from hilplant.models.park_switch import contact_now
+from hilplant.models.plant import step, write
+from hilplant.models.records import Inputs, Parameters, State, unpack_inputs, unpack_parameters, unpack_state
+
+#: Columns of a trace: estimated speed of the crank [rad/s], K in force, resistance over the model's, weights.
+TRACE = ("estimated_speed_rad_s", "gain", "resistance_factor", "weight_integral", "weight_proportional")
+
+
+@compiled
+def measure(state: State, parameters: Parameters) -> Measured:
+    """Return what a controller sees of the plant at this instant, without delay or noise."""
+    speed = state.motor_speed_rad_s / parameters.motor.gear_ratio
+    contact = contact_now(state.crank_angle_rad, state.park_contact, state.bounce_left, parameters.park_switch)
+    return Measured(speed, state.current_a, contact.shown)
+
+
+@compiled
+def commanded(inputs: Inputs, voltage_v: float, fast: float) -> Inputs:
+    """Return the inputs of a tick with a controller's command in them: supply, ON/OFF relay, FAST/SLOW relay."""
+    return Inputs(
+        1.0 if voltage_v > 0.0 else 0.0,
+        fast,
+        voltage_v,
+        inputs.screen,
+        inputs.vehicle_speed_m_s,
+        inputs.brake_torque_n_m,
+        inputs.left_screen,
+        inputs.right_screen,
+        inputs.left_wear,
+        inputs.right_wear,
+        inputs.left_force,
+        inputs.right_force,
+    )
+
+
+@compiled
+def run_rows(memory: Memory, controller: Controller, tables: Tables, plant: Any, rows: Any) -> Memory:
+    """Take one tick for each reference; return what the controller remembers at the end.
+
+    The controller sees the plant at the start of a tick, and its command is in force from there to the next tick.
+
+    Parameters
+    ----------
+    memory, controller, tables
+        See :mod:`hilplant.control.controller`.
+    plant
+        State row (moves on), parameter row, and tables over the crank angle.
+    rows
+        Input rows [ticks, inputs], of which supply and relays are the controller's; references [ticks] [rad/s]; output
+        rows [ticks, outputs] and trace rows [ticks, len(TRACE)], both filled.
+
+    """
+    state_row, parameter_row, plant_tables = plant
+    input_rows, references, output_rows, trace_rows = rows
+    parameters = unpack_parameters(parameter_row)
+    state = unpack_state(state_row)
+    for index in range(references.shape[0]):
+        measured = measure(state, parameters)
+        memory, command = control(memory, measured, references[index], controller, tables)
+        inputs = commanded(unpack_inputs(input_rows[index]), command.voltage_v, command.fast)
+        state, outputs = step(state, inputs, parameters, plant_tables)
+        write(outputs, output_rows[index])
+        trace_rows[index, 0] = memory.estimate.motor_speed_rad_s / parameters.motor.gear_ratio
+        trace_rows[index, 1] = memory.neuron.gain
+        trace_rows[index, 2] = memory.estimate.resistance_factor
+        trace_rows[index, 3] = memory.neuron.integral
+        trace_rows[index, 4] = memory.neuron.proportional
+    write(state, state_row)
+    return memory
+
+
+@compiled
+def observe_rows(model: Model, period_s: float, adapting: float, records: Any, speeds: Any) -> Estimate:
+    """Run an observer over a recording, and fill `speeds` [ticks] with its crank speeds [rad/s]; return its end.
+
+    `records` is an array [ticks, 3] of the voltage in force from each tick on, the current and the park contact at it.
+    """
+    estimate = AT_REST
+    for index in range(records.shape[0]):
+        measured = Measured(0.0, records[index, 1], records[index, 2])
+        estimate = learn_resistance(correct(estimate, measured, model), measured.park_contact, model.armature, adapting)
+        speeds[index] = estimate.motor_speed_rad_s / model.armature.gear_ratio
+        estimate = predict(estimate, records[index, 0], model, period_s)
+    return estimate

@@ -1,0 +1,66 @@
+"""The fuzzy system of section 7.4 of Dooner (2016), evaluated once into a table of K over the error.
+
+A Mamdani system: seven sets of the error, four of K, seven rules, minimum for implication, maximum for aggregation,
+the centroid. The source tells of its Figures 7-9 and 7-10 in words only; what it tells is kept:
+the error is held within 3 rad/s, at -2 rad/s it is NB to 0.125 and NM to 0.3, the sets lie tightly around zero, VS is
+Z-shaped and mostly apart from the others. The rest is assumed. Where B lies follows from the source's own
+tables: with the fuzzy system the errors in state 1 are 0.72 (Hebb) and 0.73 (Error-Hebb) of what a fixed K equal to
+the gain gives, so K is near 0.72 when the error is small.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+import skfuzzy
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+#: Triangles of the error [rad/s]: foot, peak, foot. The positive sets mirror the negative ones.
+ERROR_SETS = {
+    "NB": (-4.0, -3.0, -3.0 + 1.0 / 0.875),
+    "NM": (-1.0 - 1.0 / 0.7, -1.0, -0.4),
+    "NS": (-1.0, -0.4, 0.0),
+    "ZO": (-0.4, 0.0, 0.4),
+}
+#: Triangles of K; VS is a Z-shaped function from its first to its second number.
+GAIN_SETS = {"VS": (0.0, 0.3), "S": (0.1, 0.3, 0.5), "M": (0.3, 0.5, 0.7), "B": (0.4, 0.72, 1.0)}
+RULES = {"NB": "VS", "PB": "VS", "NM": "S", "PM": "S", "NS": "M", "PS": "M", "ZO": "B"}
+
+GREATEST_ERROR_RAD_S = 3.0
+#: Steps of K from 0 to 1 over which the centroid is taken.
+GAIN_STEPS = 400
+
+
+def degrees_of_membership(errors_rad_s: Floats) -> dict[str, Floats]:
+    """Return how far each error [rad/s] belongs to each of the seven sets, 0 to 1."""
+    errors = np.clip(errors_rad_s, -GREATEST_ERROR_RAD_S, GREATEST_ERROR_RAD_S)
+    degrees = {name: skfuzzy.trimf(errors, list(corners)) for name, corners in ERROR_SETS.items()}
+    mirrored = {name.replace("N", "P"): skfuzzy.trimf(-errors, list(ERROR_SETS[name])) for name in ("NB", "NM", "NS")}
+    return degrees | mirrored
+
+
+def gain_shapes(gains: Floats) -> dict[str, Floats]:
+    """Return how far each value of K belongs to each of the four sets, 0 to 1."""
+    return {
+        name: skfuzzy.zmf(gains, *corners) if len(corners) == 2 else skfuzzy.trimf(gains, list(corners))
+        for name, corners in GAIN_SETS.items()
+    }
+
+
+def fuzzy_gain_at(errors_rad_s: Floats) -> Floats:
+    """Return K in [0, 1] for each error [rad/s], by the rules and the centroid."""
+    gains = np.linspace(0.0, 1.0, GAIN_STEPS + 1)
+    shapes = gain_shapes(gains)
+    degrees = degrees_of_membership(errors_rad_s)
+    clipped = [np.minimum(degrees[error][:, np.newaxis], shapes[gain]) for error, gain in RULES.items()]
+    joined = np.max(clipped, axis=0)
+    return np.array([skfuzzy.defuzz(gains, row, "centroid") for row in joined])
+
+
+@lru_cache(maxsize=1)
+def gain_table(intervals: int = 600) -> Floats:
+    """Return the table [intervals + 1, 2] of error [rad/s] and K that the loop reads."""
+    errors = np.linspace(-GREATEST_ERROR_RAD_S, GREATEST_ERROR_RAD_S, intervals + 1)
+    table = np.ascontiguousarray(np.stack([errors, fuzzy_gain_at(errors)], axis=1))
+    return table

@@ -1,0 +1,69 @@
+"""Where a velocity controller sits: its memory between ticks, for the 1 kHz loop and for a node on the bus."""
+
+from typing import Any
+
+import numpy as np
+
+from hilplant.control.closed_loop import commanded, measure
+from hilplant.control.controller import Tables, control
+from hilplant.control.records import POWER_ON, Command, Controller, Measured, Memory
+from hilplant.control.reference import Reference
+from hilplant.jit import compiled
+from hilplant.models.plant import write
+from hilplant.models.records import Inputs, State, unpack_inputs, unpack_parameters, unpack_state
+from hilplant.units import SECOND_NS
+
+
+class Seat:
+    """A controller with its memory. Construction compiles it, so that no tick meets cold code."""
+
+    def __init__(self, controller: Controller, tables: Tables, reference: Reference) -> None:
+        """Sit down; `reference` gives the wanted speed [rad/s] by the time [s]."""
+        self.reference = reference
+        self._controller, self._tables = controller, tables
+        self.memory = POWER_ON
+        _decide(POWER_ON, Measured(0.0, 0.0, 0.0), 0.0, controller, tables)
+
+    def decide(self, now_s: float, measured: Measured) -> Command:
+        """Take one tick."""
+        wanted = self.reference(now_s)
+        self.memory, command = _decide(self.memory, measured, wanted, self._controller, self._tables)
+        return command
+
+    def forget(self) -> None:
+        """Begin anew at the next tick, as after power-on."""
+        self.memory = POWER_ON
+
+
+class LoopSeat(Seat):
+    """A controller inside the plant's loop: it sees the state of each tick, and writes relays and supply for it."""
+
+    def __init__(self, controller: Controller, tables: Tables, reference: Reference, parameter_row: Any) -> None:
+        """Sit down beside a plant with these packed parameters."""
+        super().__init__(controller, tables, reference)
+        self._parameter_row = parameter_row
+        plant = (np.zeros(len(State._fields)), parameter_row, np.zeros(len(Inputs._fields)))
+        _drive(POWER_ON, 0.0, controller, tables, plant)
+
+    def drive(self, now_ns: int, state_row: Any, input_row: Any) -> None:
+        """Take one tick on the loop's own rows; `input_row` gets the command. It is what ``Loop.control`` calls."""
+        wanted = self.reference(now_ns / SECOND_NS)
+        plant = (state_row, self._parameter_row, input_row)
+        self.memory = _drive(self.memory, wanted, self._controller, self._tables, plant)
+
+
+@compiled
+def _decide(
+    memory: Memory, measured: Measured, reference: float, controller: Controller, tables: Tables
+) -> tuple[Memory, Command]:
+    return control(memory, measured, reference, controller, tables)
+
+
+@compiled
+def _drive(memory: Memory, reference: float, controller: Controller, tables: Tables, plant: Any) -> Memory:
+    state_row, parameter_row, input_row = plant
+    parameters = unpack_parameters(parameter_row)
+    measured = measure(unpack_state(state_row), parameters)
+    memory, command = control(memory, measured, reference, controller, tables)
+    write(commanded(unpack_inputs(input_row), command.voltage_v, command.fast), input_row)
+    return memory

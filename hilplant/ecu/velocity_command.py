@@ -1,0 +1,53 @@
+"""What `hilplant control` does: a velocity controller on a bench's interface."""
+
+import math
+from collections.abc import Callable
+
+import typer
+
+from hilplant.bench import load_bench
+from hilplant.bus.transport import open_transport
+from hilplant.control.catalogue import controller_named, without_network
+from hilplant.control.reference import parse_reference
+from hilplant.control.seat import Seat
+from hilplant.ecu.velocity_node import Report, VelocityNode, run_velocity_node, status_period_ns
+from hilplant.runtime.clock import WallClock
+from hilplant.runtime.server import StopRequest, ended_by_signals
+from hilplant.units import SECOND_NS
+
+
+def control_command(
+    bench_name: str, name: str, reference: str, seconds: float | None, channel: str | None = None
+) -> int:
+    """Be the controller until the time is up, or SIGTERM or Ctrl-C ends it; the relays are released at the end."""
+    wanted, bench = parse_reference(reference), load_bench(bench_name)
+    interface = bench.interface if channel is None else {**bench.interface, "channel": channel}
+    period_ns = status_period_ns(bench.send)
+    controller = controller_named(name, bench.parameters.motor, period_ns / SECOND_NS)
+    side, seat = bench.ecu_side(), Seat(controller, without_network(), wanted)
+    node = VelocityNode(side.receive, side.send, open_transport(interface), seat)
+    node.report = _teller()
+    stop, clock = StopRequest(), WallClock()
+    end_ns = math.inf if seconds is None else clock.now_ns() + seconds * SECOND_NS
+    with ended_by_signals(stop):
+        try:
+            run_velocity_node(node, clock, lambda: stop() or clock.now_ns() >= end_ns, period_ns)
+        finally:
+            node.close()
+    return 0
+
+
+def _teller() -> Callable[[Report], None]:
+    """Return what prints a line each second, and whenever the plant falls silent or speaks again."""
+    last: list[object] = [None]
+
+    def tell(report: Report) -> None:
+        told = (int(report.time_s), report.lost)
+        if told != last[0]:
+            last[0] = told
+            brush = "fast" if report.command.fast > 0.5 else "slow"
+            state = "no word from the plant" if report.lost else f"speed {report.measured.speed_rad_s:6.3f} rad/s"
+            wanted, voltage = report.reference_rad_s, report.command.voltage_v
+            typer.echo(f"{report.time_s:8.3f} s  wanted {wanted:6.3f} rad/s, {state}, {voltage:6.3f} V, {brush} brush")
+
+    return tell
