@@ -85,9 +85,10 @@ def simulate_batch(  # noqa: PLR0913, PLR0917
 
 def _run(arrays: tuple[Any, ...], share: range) -> None:
     states, inputs, parameters, tables, places, output = arrays
+    row = np.empty(len(OUTPUTS))
     for k in share:
         own_inputs, own_tables = inputs[k if len(inputs) > 1 else 0], tables[k if len(tables) > 1 else 0]
-        simulate_columns(states[k], own_inputs, parameters[k], own_tables, places, output[k])
+        simulate_columns(states[k], own_inputs, parameters[k], own_tables, places, output[k], row)
 
 
 def _check(  # noqa: PLR0913, PLR0917
@@ -111,6 +112,6 @@ def _check(  # noqa: PLR0913, PLR0917
     if len(places) and not (places.min() >= 0 and places.max() < len(OUTPUTS)):
         raise ValueError(f"columns are places from 0 to {len(OUTPUTS) - 1}")
     points = parameters[:, POINTS_AT].max(initial=1.0)
-    reduced = parameters[:, MODEL_AT] == REDUCED
+    reduced = parameters[:, MODEL_AT] >= REDUCED
     if reduced.any() and channels < channel_count(int(points)):
         raise ValueError(f"tables have {channels} channels, not the {channel_count(int(points))} for {points:g} points")

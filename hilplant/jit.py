@@ -43,9 +43,13 @@ def _writable(folder: Path) -> bool:
 MODELS_HASH = _sources_hash("models", "surrogates")
 
 
+#: Where compiled functions are written and called. All of these decide whether what is in the cache still holds.
+ROOMS = ("models", "surrogates", "control", "train")
+
+
 def _cache_folder() -> Path:
     root = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("hilplant"))
-    folder = root / f"compiled-{_sources_hash('models', 'surrogates', 'control')}"
+    folder = root / f"compiled-{_sources_hash(*ROOMS)}"
     if _writable(folder):
         return folder
     passing = tempfile.mkdtemp(prefix="hilplant-compiled-")
@@ -57,14 +61,28 @@ vars(numba.config)["CACHE_DIR"] = str(_cache_folder())
 
 
 def compiled(function: Function) -> Function:
-    """Compile a model function. No fastmath: results must not depend on how the compiler reorders a sum."""
-    # all that a step calls becomes one piece of code: calls between pieces cost a quarter of the step
-    return cast(Function, numba.njit(cache=True, error_model="numpy", forceinline=True)(function))
+    """Compile a model function. No fastmath: results must not depend on how the compiler reorders a sum.
+
+    It may read and write arrays of its caller. It cannot make one, which is an error when it is compiled, and must not
+    return one to Python, see :func:`compiled_with_arrays`.
+    """
+    # all that a step calls becomes one piece of code: calls between pieces cost a quarter of the step. Without
+    # numba's run time nobody counts references to the caller's arrays, atomically, at every call: another quarter.
+    options: dict[str, Any] = {"cache": True, "error_model": "numpy", "forceinline": True, "_nrt": False}
+    return cast(Function, numba.njit(**options)(function))
+
+
+def compiled_with_arrays(function: Function) -> Function:
+    """Compile a model function that returns part of an array to Python, for which references must be counted."""
+    # said, not left out: what is left out comes from whoever happens to call it first
+    options: dict[str, Any] = {"cache": True, "error_model": "numpy", "forceinline": True, "_nrt": True}
+    return cast(Function, numba.njit(**options)(function))
 
 
 def compiled_for_threads(function: Function) -> Function:
     """Compile a model function that runs long and lets other threads of Python run meanwhile.
 
-    Several threads may call it at once, each on arrays of its own.
+    Several threads may call it at once, each on arrays of its own; it makes none, as with :func:`compiled`.
     """
-    return cast(Function, numba.njit(cache=True, error_model="numpy", nogil=True)(function))
+    options: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True, "_nrt": False}
+    return cast(Function, numba.njit(**options)(function))

@@ -3,7 +3,7 @@
 import ctypes
 import shutil
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +14,10 @@ from hilplant.benchmarks.results import NotMeasurable
 
 #: Contraction to fused multiply-add is off, as in the compiled Python: the digits shall be the same.
 FLAGS = ("-O3", "-ffp-contract=off", "-std=c11")
+WITH_OPENMP = "-fopenmp"
 
 Rows = NDArray[np.float64]
+#: State, inputs [ticks, inputs], parameters, tables, outputs [ticks, outputs].
 SimulateRows = Callable[[Rows, Rows, Rows, Rows, Rows], None]
 
 _SOURCE = Path(__file__).with_name("step.c")
@@ -32,24 +34,49 @@ def compiler() -> str:
 
 def compile_step(folder: Path, *more_flags: str) -> SimulateRows:
     """Compile step.c into `folder` and return its loop, which takes the same arrays as `simulate_rows`."""
+    function = _library(folder, more_flags).simulate_rows
+
+    def simulate(state: Rows, inputs: Rows, parameters: Rows, tables: Rows, outputs: Rows) -> None:
+        arrays = (state, inputs, parameters, tables, outputs)
+        function(*_addresses(arrays), _shape(arrays))
+
+    return simulate
+
+
+def compile_batch(folder: Path, columns: Sequence[int], *more_flags: str) -> SimulateRows:
+    """Compile step.c with OpenMP and return its loop over many sets on all processors.
+
+    It takes states [sets, states], inputs [ticks, inputs] of all sets, parameters [sets, parameters], tables of all
+    sets, and outputs [sets, ticks, columns], of which it fills those outputs whose places are in `columns`.
+    """
+    function = _library(folder, (WITH_OPENMP, *more_flags)).simulate_batch
+    places = (ctypes.c_long * len(columns))(*columns)
+
+    def simulate(states: Rows, inputs: Rows, parameters: Rows, tables: Rows, outputs: Rows) -> None:
+        arrays = (states, inputs, parameters, tables, outputs)
+        function(*_addresses(arrays), _shape(arrays), places)
+
+    return simulate
+
+
+def _library(folder: Path, more_flags: tuple[str, ...]) -> ctypes.CDLL:
     compiler()
     library = folder / f"step{''.join(more_flags)}.so"
     command = ["gcc", *FLAGS, *more_flags, "-shared", "-fPIC", str(_SOURCE), "-o", str(library), "-lm"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     if ended.returncode:
         raise NotMeasurable(f"gcc: {(ended.stderr.strip() or 'no message').splitlines()[0]}")
-    return _bound(ctypes.CDLL(str(library)).simulate_rows)
+    return ctypes.CDLL(str(library))
 
 
-def _bound(function: Any) -> SimulateRows:
-    function.restype = None
-    function.argtypes = [_DOUBLES, _DOUBLES, ctypes.c_long, _DOUBLES, _DOUBLES, ctypes.c_long, _DOUBLES]
+def _addresses(arrays: Sequence[Rows]) -> list[Any]:
+    if not all(array.dtype == np.float64 and array.flags.c_contiguous for array in arrays):
+        raise ValueError("the step in C takes contiguous arrays of 64-bit floats")
+    return [array.ctypes.data_as(_DOUBLES) for array in arrays]
 
-    def simulate_rows(state: Rows, inputs: Rows, parameters: Rows, tables: Rows, outputs: Rows) -> None:
-        state_at, inputs_at, parameters_at, tables_at, outputs_at = (
-            row.ctypes.data_as(_DOUBLES) for row in (state, inputs, parameters, tables, outputs)
-        )
-        knots = tables.shape[1]
-        function(state_at, inputs_at, len(inputs), parameters_at, tables_at, knots, outputs_at)
 
-    return simulate_rows
+def _shape(arrays: Sequence[Rows]) -> Any:
+    states, inputs, parameters, tables, outputs = arrays
+    sets = len(parameters) if parameters.ndim > 1 else 1
+    widths = (array.shape[-1] for array in (states, inputs, parameters, outputs))
+    return (ctypes.c_long * 8)(sets, len(inputs), *tables.shape[:2], *widths)

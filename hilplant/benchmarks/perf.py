@@ -13,6 +13,8 @@ from hilplant.failure import Failure
 PARTS = {
     "step": "step_cost.measure",
     "simulate": "simulate_cost.measure",
+    "batch": "batch_cost.measure",
+    "torque-network": "torque_network.measure",
     "tick": "tick_cost.measure",
     "tick-vcan": "tick_vcan.measure",
     "wakeup": "wakeup.measure",

@@ -1,295 +1,135 @@
-/* The whole step of the plant by hand, in C99: the yardstick for the compiled Python in hilplant/models.
+/* The whole step of the plant by hand, in C11: the yardstick for the compiled Python in hilplant/models.
  *
- * Rows as hilplant/models/records.py packs them; equations, order and names as in hilplant/models/plant.py, where
- * they are explained. Kept equal to it by tests/oracle/test_plant_in_c.py; nothing else uses it.
+ * Equations, order and names as in hilplant/models/plant.py, where they are explained. Kept equal to it by
+ * tests/oracle/test_plant_in_c.py; nothing else uses it. The loads are none, polynomial and reduced and the motor is
+ * the physical one: what networks would remember and show is 0.
  */
-#include <math.h>
+#include <string.h>
 
-#define TURN 6.283185307179586476925
-enum { STATES = 6, INPUTS = 6, OUTPUTS = 17, STRETCHES = 24, SEARCH_CAP = 80 };
-static const double SEARCH_TOLERANCE = 1e-14;
+#include "shaft.h"
 
-typedef struct { double resistance, inductance, constant; } Brush;
-typedef struct {
-    double step;
-    Brush slow, fast;
-    double inertia, damping, coulomb, ratio;
-    double park_angle, half_window, hysteresis, bounce_ticks;
-    double load, c1, c2;
-    double left_offset, left_length, right_offset, right_length;
-} Parameters;
-typedef struct { double current, speed, angle, contact, bounce_left, guard; } State;
-typedef struct { double relay_on, relay_fast, supply, screen, vehicle_speed, brake; } Inputs;
-typedef struct { double current, speed, turned; } Motion;
-typedef struct { double voltage, resistance, inductance, constant, inertia, damping, dry; } Drive;
+enum { KNOWN_OUTPUTS = 23 };
 
-static inline Motion glide(Motion motion, const Drive *drive, double torque, double time)
-{
-    const double a11 = -drive->resistance / drive->inductance, a12 = -drive->constant / drive->inductance;
-    const double a21 = drive->constant / drive->inertia, a22 = -drive->damping / drive->inertia;
-    const double mean = 0.5 * (a11 + a22), half = 0.5 * (a11 - a22);
-    const double discriminant = half * half + a12 * a21, s = sqrt(fabs(discriminant));
-    double shift, one, f;
-    if (discriminant > 0.0) {
-        shift = (a11 * a22 - a12 * a21) / (mean - s);
-        one = exp(shift * time);
-        f = one * (-expm1(-2.0 * s * time) / (2.0 * s));
-    } else {
-        shift = mean;
-        f = exp(mean * time);
-        one = f * cos(s * time);
-        f *= s > 0.0 ? sin(s * time) / s : time;
-    }
-    const double strength = drive->resistance * drive->damping + drive->constant * drive->constant;
-    const double final_current = (drive->voltage * drive->damping + drive->constant * torque) / strength;
-    const double final_speed = (drive->voltage * drive->constant - drive->resistance * torque) / strength;
-    const double i = motion.current - final_current, w = motion.speed - final_speed;
-    Motion end;
-    end.current = final_current + (one + f * (a11 - shift)) * i + f * a12 * w;
-    end.speed = final_speed + f * a21 * i + (one + f * (a22 - shift)) * w;
-    const double flux = drive->constant * drive->inductance * (end.current - motion.current);
-    const double momentum = drive->resistance * drive->inertia * (end.speed - motion.speed);
-    end.turned = motion.turned + final_speed * time - (flux + momentum) / strength;
-    return end;
-}
-
-static inline double acceleration(Motion motion, const Drive *drive, double torque)
-{
-    return (drive->constant * motion.current - drive->damping * motion.speed - torque) / drive->inertia;
-}
-
-static double held_current(double current, const Drive *drive, double time)
-{
-    const double final = drive->voltage / drive->resistance;
-    return final + (current - final) * exp(-time * drive->resistance / drive->inductance);
-}
-
-static double stick(Motion *motion, const Drive *drive, double left)
-{
-    const double final = drive->voltage / drive->resistance;
-    const double threshold = copysign(drive->dry / drive->constant, final);
-    motion->speed = 0.0;
-    if (fabs(final) > fabs(threshold)) {
-        const double ratio = (final - motion->current) / (final - threshold);
-        const double wait = ratio > 1.0 ? log(ratio) * drive->inductance / drive->resistance : 0.0;
-        if (wait < left) {
-            motion->current = threshold * (1.0 + 1e-15);
-            return wait;
-        }
-    }
-    motion->current = held_current(motion->current, drive, left);
-    return left;
-}
-
-static int dips(Motion start, Motion end, const Drive *drive, double sign)
-{
-    const double dry = drive->dry, voltage = drive->voltage - drive->constant * start.speed;
-    if (sign * voltage * drive->constant > drive->resistance * dry && sign * drive->constant * start.current > dry)
-        return 0;
-    return sign * acceleration(start, drive, sign * dry) < 0.0 && sign * acceleration(end, drive, sign * dry) > 0.0;
-}
-
-static double half_period(const Drive *drive)
-{
-    const double half = 0.5 * (drive->resistance / drive->inductance - drive->damping / drive->inertia);
-    const double discriminant
-        = half * half - drive->constant * drive->constant / (drive->inductance * drive->inertia);
-    return discriminant < 0.0 ? 0.5 * TURN / sqrt(-discriminant) : INFINITY;
-}
-
-static double instant_below_zero(Motion motion, const Drive *drive, double sign, double stretch)
-{
-    double low = 0.0, high = stretch;
-    for (int k = 0; k < SEARCH_CAP && high - low > SEARCH_TOLERANCE * stretch; ++k) {
-        const double middle = 0.5 * (low + high);
-        const Motion point = glide(motion, drive, sign * drive->dry, middle);
-        if (sign * point.speed < 0.0) return middle;
-        if (sign * acceleration(point, drive, sign * drive->dry) < 0.0) low = middle;
-        else high = middle;
-    }
-    return 0.0;
-}
-
-static double instant_of_zero(Motion motion, const Drive *drive, double sign, double below)
-{
-    const double torque = sign * drive->dry;
-    double low = 0.0, high = below, instant = 0.5 * below;
-    for (int k = 0; k < SEARCH_CAP; ++k) {
-        const Motion point = glide(motion, drive, torque, instant);
-        if (sign * point.speed > 0.0) low = instant;
-        else high = instant;
-        double following = instant - point.speed / acceleration(point, drive, torque);
-        if (!(low <= following && following <= high)) following = 0.5 * (low + high);
-        if (fabs(following - instant) <= SEARCH_TOLERANCE * below) return following;
-        instant = following;
-    }
-    return instant;
-}
-
-static double slide(Motion *motion, const Drive *drive, double stretch)
-{
-    const double sign = copysign(1.0, motion->speed != 0.0 ? motion->speed : motion->current);
-    const double torque = sign * drive->dry;
-    const Motion end = glide(*motion, drive, torque, stretch);
-    double below = stretch;
-    if (sign * end.speed >= 0.0) {
-        below = dips(*motion, end, drive, sign) ? instant_below_zero(*motion, drive, sign, stretch) : 0.0;
-        if (below == 0.0) {
-            *motion = end;
-            return stretch;
-        }
-    }
-    const double instant = instant_of_zero(*motion, drive, sign, below);
-    *motion = glide(*motion, drive, torque, instant);
-    motion->speed = 0.0;
-    return instant;
-}
-
-static Motion advance(Motion motion, const Drive *drive, double duration)
-{
-    if (drive->dry == 0.0) return glide(motion, drive, 0.0, duration);
-    double left = duration;
-    for (int k = 0, swings = 0; k < STRETCHES; ++k) {
-        if (motion.speed == 0.0 && fabs(drive->constant * motion.current) <= drive->dry)
-            left -= stick(&motion, drive, left);
-        else
-            left -= slide(&motion, drive, swings < 2 ? fmin(left, half_period(drive)) : left);
-        swings = motion.speed != 0.0 ? swings + 1 : 0;
-        if (left <= 0.0) return motion;
-    }
-    motion.current = held_current(motion.current, drive, left);
-    motion.speed = 0.0;
-    return motion;
-}
-
-static inline double load_damping(double angle, double speed, const Parameters *p)
-{
-    if (p->load != 1.0) return 0.0;
-    const double x = sin(angle);
-    double shape;
-    if (x >= 0.0) {
-        shape = (((-0.19224 * x + 0.021769) * x - 0.15435) * x + 0.077812) * x + 0.68626;
-    } else {
-        shape = ((0.4184 * x - 0.30315) * x - 0.42441) * x + 0.12634;
-        shape = (((shape * x + 0.21484) * x - 0.10093) * x - 0.29859) * x + 0.63276;
-    }
-    const double damping = p->c2 * (shape + speed * p->c1);
-    return damping > 0.0 ? damping : 0.0;
-}
-
-static inline void hermite(const double *knots, long count, double angle, double *value, double *slope)
-{
-    const long intervals = count - 1;
-    double place = angle * (intervals / TURN);
-    if (!(0.0 <= place && place < intervals)) place = 0.0;
-    const long index = (long)place;
-    const double u = place - index, width = TURN / intervals;
-    const double *knot = knots + 2 * index;
-    const double m0 = knot[1] * width, m1 = knot[3] * width, rise = knot[2] - knot[0];
-    const double c2 = 3.0 * rise - 2.0 * m0 - m1, c3 = m0 + m1 - 2.0 * rise;
-    *value = knot[0] + u * (m0 + u * (c2 + u * c3));
-    *slope = (m0 + u * (2.0 * c2 + u * (3.0 * c3))) / width;
-}
+/* How many there are of each; rows may be wider than what is known here. */
+typedef struct { long sets, ticks, knots, channels, state_width, input_width, parameter_width, output_width; } Shape;
 
 static inline double finite_or_0(double value) { return isfinite(value) ? value : 0.0; }
 
-static inline double zero_if_finite(double a, double b, double c) { return 0.0 * a + 0.0 * b + 0.0 * c; }
-
-static inline void admit(State *state, Inputs *in)
+static inline double spoilt_state(const State *state)
 {
-    const double zero = zero_if_finite(state->current, state->speed, state->angle)
-        + zero_if_finite(in->relay_on, in->relay_fast, in->supply)
-        + zero_if_finite(in->screen, in->vehicle_speed, in->brake);
-    if (zero == 0.0 && state->guard == 0.0) return;
-    *state = (State){0.0, 0.0, finite_or_0(state->angle), finite_or_0(state->contact),
-                     finite_or_0(state->bounce_left), 1.0};
-    *in = (Inputs){0.0, 0.0, finite_or_0(in->supply), finite_or_0(in->screen), finite_or_0(in->vehicle_speed), 0.0};
+    return 0.0 * state->current + 0.0 * state->speed + 0.0 * state->angle;
 }
 
-static inline double park_contact(State *state, const Parameters *p)
+static inline double spoilt_inputs(const Inputs *in)
 {
-    double distance = fabs(state->angle - p->park_angle);
-    distance = fmin(distance, fabs(TURN - distance));
-    const double reach = p->half_window + (state->contact > 0.5 ? p->hysteresis : 0.0);
-    const double closed = distance <= reach ? 1.0 : 0.0;
-    if (closed != state->contact) {
-        state->bounce_left = p->bounce_ticks;
-        return state->contact = closed;
-    }
-    if (state->bounce_left <= 0.0) {
-        state->bounce_left = 0.0;
-        return closed;
-    }
-    const int away = fmod(p->bounce_ticks - state->bounce_left, 2.0) < 1.0;
-    state->bounce_left -= 1.0;
-    return away ? 1.0 - closed : closed;
+    double zero = 0.0 * in->relay_on + 0.0 * in->relay_fast + 0.0 * in->supply + 0.0 * in->screen;
+    zero += 0.0 * in->vehicle_speed + 0.0 * in->brake + 0.0 * in->left_screen + 0.0 * in->right_screen;
+    return zero + 0.0 * in->left_wear + 0.0 * in->right_wear + 0.0 * in->left_force + 0.0 * in->right_force;
+}
+
+static void make_safe(State *state, Inputs *in)
+{
+    *state = (State){0.0, 0.0, finite_or_0(state->angle), finite_or_0(state->contact), finite_or_0(state->bounce_left),
+                     1.0, finite_or_0(state->park_phase)};
+    *in = (Inputs){0.0, 0.0, finite_or_0(in->supply), finite_or_0(in->screen), finite_or_0(in->vehicle_speed), 0.0,
+                   finite_or_0(in->left_screen), finite_or_0(in->right_screen), finite_or_0(in->left_wear),
+                   finite_or_0(in->right_wear), finite_or_0(in->left_force), finite_or_0(in->right_force)};
 }
 
 static inline double without_denormals(double value) { return fabs(value) < 1e-30 ? 0.0 : value; }
 
-static inline double within_turn(double angle)
+static inline void measure(Motion motion, const Place *at, const Resistance *load, double shown, const State *state,
+                           const Train *train, double *out)
 {
-    if (0.0 <= angle && angle < TURN) return angle;
-    const double wrapped = angle - TURN * floor(angle / TURN);
-    return 0.0 <= wrapped && wrapped < TURN ? wrapped : wrapped * 0.0;
-}
-
-static inline void step(State *state, Inputs in, const Parameters *p, const double *tables, long knots, double *out)
-{
-    admit(state, &in);
-    const double angle = state->angle, speed = state->speed / p->ratio;
-    const Brush *brush = in.relay_fast > 0.5 ? &p->fast : &p->slow;
-    const double terminal = in.relay_on > 0.5 ? in.supply : 0.0;
-    const double contact = park_contact(state, p);
-    double left, left_slope, right, right_slope;
-    hermite(tables, knots, angle, &left, &left_slope);
-    hermite(tables + 2 * knots, knots, angle, &right, &right_slope);
-    double load = load_damping(angle, speed, p) * fabs(speed);
-    if (speed != 0.0) load += in.brake;
-    out[0] = in.supply;
-    out[1] = terminal;
-    out[2] = state->current;
-    out[3] = state->speed;
-    out[4] = speed;
-    out[5] = angle;
-    out[6] = load;
-    out[7] = contact;
-    out[8] = left + p->left_offset;
-    out[9] = right + p->right_offset;
+    const Parameters *p = train->p;
+    const Inputs *in = train->in;
+    const Connection *connection = train->connection;
+    const double crank_speed = motion.speed / p->motor.ratio;
+    const double left = value(at, LEFT_ROCKER), right = value(at, RIGHT_ROCKER);
+    out[0] = in->supply;
+    out[1] = connection->terminal;
+    out[2] = motion.current;
+    out[3] = motion.speed;
+    out[4] = crank_speed;
+    out[5] = state->angle;
+    out[6] = load_torque(motion, load, train);
+    out[7] = shown;
+    out[8] = left + p->left_arm.offset;
+    out[9] = right + p->right_arm.offset;
     out[10] = left;
     out[11] = right;
-    out[12] = p->left_length * left_slope * speed;
-    out[13] = p->right_length * right_slope * speed;
-    out[14] = in.relay_on;
-    out[15] = in.relay_fast;
+    out[12] = p->left_arm.length * derivative(at, LEFT_ROCKER) * crank_speed;
+    out[13] = p->right_arm.length * derivative(at, RIGHT_ROCKER) * crank_speed;
+    out[14] = in->relay_on;
+    out[15] = in->relay_fast;
     out[16] = state->guard;
-    const double half_way = angle + 0.5 * p->step * speed;
-    const Drive drive = {terminal, brush->resistance, brush->inductance, brush->constant, p->inertia,
-                         p->damping + load_damping(half_way, speed, p) / (p->ratio * p->ratio),
-                         p->coulomb + in.brake / p->ratio};
-    const Motion end = advance((Motion){state->current, state->speed, 0.0}, &drive, p->step);
-    state->current = without_denormals(end.current);
-    state->speed = without_denormals(end.speed);
-    state->angle = within_turn(angle + end.turned / p->ratio);
-    if (zero_if_finite(state->current, state->speed, state->angle) != 0.0) {
-        state->current = state->speed = 0.0;
-        state->angle = angle;
-        state->guard = 1.0;
-    }
+    out[17] = connection->v53;
+    out[18] = connection->v53b;
+    out[19] = connection->v53e;
+    out[20] = connection->v31;
+    out[21] = left_pressing(at, &p->load, in).force;
+    out[22] = right_pressing(at, &p->load, in).force;
 }
 
-void simulate_rows(double *state_row, const double *inputs, long n, const double *parameter_row,
-                   const double *tables, long knots, double *outputs)
+static inline void step(State *state, Inputs in, const Parameters *p, const Table *table, double *out)
 {
-    const double *r = parameter_row;
-    const Parameters parameters = {r[0], {r[1], r[2], r[3]}, {r[4], r[5], r[6]}, r[7], r[8], r[9], r[10], r[11], r[12],
-                                   r[13], r[14], r[15], r[16], r[17], r[18], r[19], r[20], r[21]};
-    State state = {state_row[0], state_row[1], state_row[2], state_row[3], state_row[4], state_row[5]};
-    for (long k = 0; k < n; ++k) {
-        const double *in = inputs + k * INPUTS;
-        step(&state, (Inputs){in[0], in[1], in[2], in[3], in[4], in[5]}, &parameters, tables, knots,
-             outputs + k * OUTPUTS);
+    if (!(spoilt_state(state) + spoilt_inputs(&in) == 0.0 && state->guard == 0.0)) make_safe(state, &in);
+    const double angle = state->angle, speed = state->speed / p->motor.ratio;
+    const Contact contact = contact_now(state, &p->park_switch);
+    const double phase = next_phase(&in, &p->park_switch, contact, state);
+    const Connection connection = connect_motor(&in, p, contact, phase, state);
+    const Motion start = {connection.closed ? state->current : 0.0, state->speed, 0.0};
+    const Train train = {&connection, table, &in, p};
+    const Place at = find(table, angle);
+    const Resistance load
+        = p->load.model == REDUCED ? reduced(&at, speed, &p->load, &in) : by_speed(angle, speed, &p->load, &in);
+    measure(start, &at, &load, contact.shown, state, &train, out);
+    const Motion end = turn(start, angle, &load, &train);
+    *state = (State){without_denormals(end.current), without_denormals(end.speed),
+                     within_turn(angle + end.turned / p->motor.ratio), contact.closed, contact.bounce_left, state->guard,
+                     phase};
+    if (spoilt_state(state) == 0.0 && state->guard == 0.0) return;
+    state->current = state->speed = 0.0;
+    state->angle = angle;
+    state->guard = 1.0;
+}
+
+/* One set: all outputs of each tick, or those whose places are in `columns`. */
+static void run(double *state_row, const double *inputs, const double *parameter_row, const Table *table,
+                double *outputs, const Shape *shape, const long *columns)
+{
+    Parameters parameters;
+    State state;
+    Inputs in;
+    double shown[KNOWN_OUTPUTS];
+    memcpy(&parameters, parameter_row, sizeof parameters);
+    memcpy(&state, state_row, sizeof state);
+    for (long tick = 0; tick < shape->ticks; ++tick) {
+        double *row = outputs + tick * shape->output_width;
+        memcpy(&in, inputs + tick * shape->input_width, sizeof in);
+        step(&state, in, &parameters, table, columns ? shown : row);
+        for (long k = 0; columns && k < shape->output_width; ++k) row[k] = shown[columns[k]];
+        for (long k = KNOWN_OUTPUTS; !columns && k < shape->output_width; ++k) row[k] = 0.0;
     }
-    const double end[STATES] = {state.current, state.speed, state.angle, state.contact, state.bounce_left, state.guard};
-    for (int k = 0; k < STATES; ++k) state_row[k] = end[k];
+    memset(state_row, 0, shape->state_width * sizeof *state_row);
+    memcpy(state_row, &state, sizeof state);
+}
+
+void simulate_rows(double *state, const double *inputs, const double *parameters, const double *table, double *outputs,
+                   const Shape *shape)
+{
+    run(state, inputs, parameters, &(Table){table, shape->knots, shape->channels}, outputs, shape, NULL);
+}
+
+/* Many sets with the same inputs and table, on all processors where this is compiled with OpenMP. */
+void simulate_batch(double *states, const double *inputs, const double *parameters, const double *table,
+                    double *outputs, const Shape *shape, const long *columns)
+{
+    const Table of_all = {table, shape->knots, shape->channels};
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic)
+#endif
+    for (long set = 0; set < shape->sets; ++set)
+        run(states + set * shape->state_width, inputs, parameters + set * shape->parameter_width, &of_all,
+            outputs + set * shape->ticks * shape->output_width, shape, columns);
 }

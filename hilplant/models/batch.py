@@ -2,25 +2,20 @@
 
 from typing import Any
 
-import numpy as np
-
 from hilplant.jit import compiled_for_threads
 from hilplant.models.plant import step, write
 from hilplant.models.records import unpack_inputs, unpack_parameters, unpack_state
-from hilplant.signals import OUTPUTS
-
-WIDTH = len(OUTPUTS)
 
 
 @compiled_for_threads
 def simulate_columns(  # noqa: PLR0913, PLR0917
-    state_row: Any, input_rows: Any, parameter_row: Any, tables: Any, columns: Any, output: Any
+    state_row: Any, input_rows: Any, parameter_row: Any, tables: Any, columns: Any, output: Any, row: Any
 ) -> None:
     """Do as ``plant.simulate_rows``, but keep only some of the outputs.
 
-    `columns` are their places in ``signals.OUTPUTS``, `output` an array [ticks, len(columns)].
+    `columns` are their places in ``signals.OUTPUTS``, `output` an array [ticks, len(columns)]. `row` is room
+    for all outputs of one tick.
     """
-    row = np.empty(WIDTH)
     parameters, state = unpack_parameters(parameter_row), unpack_state(state_row)
     for tick in range(input_rows.shape[0]):
         state, outputs = step(state, unpack_inputs(input_rows[tick]), parameters, tables)
