@@ -14,6 +14,9 @@ Point = Annotated[list[Real], Field(min_length=2, max_length=3)]
 Efficiency = Annotated[float, Field(gt=0, le=1)]
 BackEfficiency = Annotated[float, Field(ge=0, le=1)]
 
+#: Beyond this coordinate [m] a design point was written in another unit.
+FARTHEST_M = 10.0
+
 
 class WithAssumptions(Checked):
     """A group that names those of its keys whose values nobody measured or published."""
@@ -41,12 +44,16 @@ def assumed_in(part: Checked, prefix: str = "") -> Iterator[str]:
 
 
 class Sourced(WithAssumptions):
-    """A parameter set as a document: what it is, where its numbers come from, how they were obtained."""
+    """A parameter set as a document: what it is, where its numbers come from, how they were obtained.
+
+    `identified` is what identification says of its result: data, cost, seed, date and intervals.
+    """
 
     name: Name
     source: Name
     status: Literal["measured", "identified", "published", "assumed"]
     comment: str = ""
+    identified: dict[str, Any] | None = None
 
 
 class BrushSection(Checked):
@@ -88,6 +95,14 @@ class PointsSection(WithAssumptions):
     """Joints by their letter, [x, y] or [x, y, z]."""
 
     points_m: dict[str, Point]
+
+    @model_validator(mode="after")
+    def _in_metres(self) -> Self:
+        for name, point in self.points_m.items():
+            if max(map(abs, point)) > FARTHEST_M:
+                text = f"{name} is {max(point, key=abs):g} m away, and no part of a wiper beyond {FARTHEST_M:g} m"
+                raise wrong("points_m", name, text=f"{text}: points are in metres, not in millimetres")
+        return self
 
 
 class ArmSection(PointsSection):

@@ -18,10 +18,14 @@ WETNESS = dict(SCREENS)
 
 @dataclass(frozen=True, slots=True)
 class Conditions:
-    """What a turn meets: the wetness of the screen from 0 to 1, and the speed of the vehicle [m/s]."""
+    """What a turn meets: the wetness of the screen from 0 to 1, and the speed of the vehicle [m/s].
+
+    `pressed` is a factor on the force of both arms; 0 lifts them, and leaves everything but friction.
+    """
 
     wetness: float
     vehicle_speed_m_s: float = 0.0
+    pressed: float = 1.0
 
 
 def crank_torque(bench: Bench, crank_rad: Floats, crank_speed_rad_s: float, conditions: Conditions) -> Floats:
@@ -29,8 +33,12 @@ def crank_torque(bench: Bench, crank_rad: Floats, crank_speed_rad_s: float, cond
 
     The speed is constant, so the inertia shows only where it changes with the angle, M'(angle) w^2/2.
     """
-    inputs: Inputs = unpack_inputs(bench.input_row)._replace(
-        screen=conditions.wetness, vehicle_speed_m_s=conditions.vehicle_speed_m_s
+    given: Inputs = unpack_inputs(bench.input_row)
+    inputs = given._replace(
+        screen=conditions.wetness,
+        vehicle_speed_m_s=conditions.vehicle_speed_m_s,
+        left_force=given.left_force * conditions.pressed,
+        right_force=given.right_force * conditions.pressed,
     )
     return np.array([_torque(bench, angle, crank_speed_rad_s, inputs) for angle in crank_rad])
 

@@ -1,6 +1,6 @@
 """The test of section 4.6: five wipes of one second at even speed, with another screen or wind in each."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,11 +29,15 @@ WIPES = (
 
 @dataclass(frozen=True, slots=True)
 class Wipe:
-    """One second of the test: its torques at the crank [N m], and which of them belong to the forward wipe."""
+    """One second of the test: its torques at the crank [N m], and which of them belong to the forward wipe.
+
+    `friction_n_m` is what of each torque is friction: the rest is there with lifted arms as well.
+    """
 
     conditions: Conditions
     crank_rad: Floats
     torque_n_m: Floats
+    friction_n_m: Floats
     forward: NDArray[np.bool_]
 
     @property
@@ -56,15 +60,26 @@ def five_wipes(bench: Bench) -> list[Wipe]:
     """Return the five wipes of Figure 4-32 with this bench's wiper."""
     crank = np.linspace(0.0, TURN_RAD, SAMPLES, endpoint=False)
     forward = _forward(bench, crank)
-    return [
-        Wipe(conditions, crank, crank_torque(bench, crank, CRANK_SPEED_RAD_S, conditions), forward)
-        for conditions in WIPES
-    ]
+    return [_wipe(bench, crank, forward, conditions) for conditions in WIPES]
+
+
+def _wipe(bench: Bench, crank_rad: Floats, forward: NDArray[np.bool_], conditions: Conditions) -> Wipe:
+    whole, lifted = (
+        crank_torque(bench, crank_rad, CRANK_SPEED_RAD_S, each)
+        for each in (conditions, replace(conditions, pressed=0.0))
+    )
+    return Wipe(conditions, crank_rad, whole, whole - lifted, forward)
 
 
 def shape_difference(one: Wipe, other: Wipe) -> float:
-    """Return how far the shapes of two wipes are apart: the RMS difference of their torques, each over its mean."""
-    apart = one.torque_n_m / one.mean_n_m - other.torque_n_m / other.mean_n_m
+    """Return how far two wipes are apart in the shape of their friction: RMS difference, each over its mean.
+
+    Masses and gravity are left out: they are the same in both, and on a wet screen as large as the friction, so that
+    the whole torque over its mean would show their share and not a shape. 0 where nothing rubs.
+    """
+    if not one.friction_n_m.any() or not other.friction_n_m.any():
+        return 0.0
+    apart = one.friction_n_m / one.friction_n_m.mean() - other.friction_n_m / other.friction_n_m.mean()
     return float(np.sqrt(np.mean(apart**2)))
 
 

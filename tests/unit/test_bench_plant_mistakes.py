@@ -31,6 +31,7 @@ def the_mistake(folder: Path, text: str) -> str:
         ("F: [0.2030, 0.0270, 0.0]", "F: [0.2030]", "F: ["),
         ("kind: bent", "kind: straight", "    O: [0.0, 0.0, 0.0]\n    A: [-0.3000"),
         ("kind: slave_driven", "kind: centre_driven", "points_m: #"),
+        ("C: [-0.6900, 0.0500, 0.0]", "C: [0.6900, 0.0500, 0.0]", "    O: [0.0, 0.0, 0.0]\n    A: [-0.5700"),
         ("kind: slave_driven", "kind: slave_drivn", "kind: slave"),
         ("kind: slave_driven", "kind: assembly", "kind: slave"),
         ("kind: slave_driven", "kind: slave_driven\ncrank: handle", "crank: handle"),
@@ -78,16 +79,20 @@ def test_a_linkage_that_cannot_work_is_told_in_its_own_file(tmp_path: Path, righ
             "3: drag and lift are each a number, or",
         ),
         (
-            "blades: {left: {force_n: 7, lift: [[0, 1]]}, right: {force_n: 7}}",
+            "blades: {left: {force_n: 7, area_m2: 1, lift: [[0, 1]]}, right: {force_n: 7}}",
             "3: left blade: lift must be a number or at",
         ),
         (
-            "blades: {left: {force_n: 7, drag: [[9, 1], [8, 1]]}, right: {force_n: 7}}",
+            "blades: {left: {force_n: 7, area_m2: 1, drag: [[9, 1], [8, 1]]}, right: {force_n: 7}}",
             "3: left blade: drag: the arm's angles must rise, but 8.0 follows 9.0 deg",
         ),
         (
             "blades: {left: {force_n: 7, area_m2: 1, lift: [[90, 1], [120, 1]]}, right: {force_n: 7}}",
             "3: left blade: lift: the table covers 90 to 120 deg, but the arm sweeps 97.1",
+        ),
+        (
+            "blades: {left: {force_n: 7, lift: 0.05}, right: {force_n: 7}}",
+            "3: lift needs area_m2 beside it, the area of the blade; without it no wind acts",
         ),
         (
             "blades: {left: {force_n: 7, assumed: [drag]}, right: {force_n: 7}}",
@@ -147,6 +152,23 @@ def test_a_gear_that_would_give_energy_is_told_in_its_own_file(tmp_path: Path, l
     (tmp_path / "own.yaml").write_text(motor + line + "\n")
     number = motor.count("\n") + 1
     assert the_mistake(tmp_path, "plant: {motor: own.yaml}\n") == f"own.yaml:{number}: {message}"
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("A: [0.0445, 0.0055, 0.0]", "A: [44.5, 5.5, 0.0]"),
+        ("A: [-0.5700, 0.0100, 0.0]", "A: [-570, 10, 0.0]"),
+        ("A: [0.5000, -0.0300, 0.0]", "A: [500, -30, 0.0]"),
+    ],
+)
+def test_points_in_millimetres_are_told_at_their_line(tmp_path: Path, right: str, wrong: str) -> None:
+    """A linkage a thousand times too large closes as well; only its size gives it away."""
+    (tmp_path / "own.yaml").write_text(LINKAGE.replace(right, wrong, 1))
+    number = LINKAGE[: LINKAGE.index(right)].count("\n") + 1
+    found = the_mistake(tmp_path, "plant: {linkage: own.yaml}\n")
+    assert found.startswith(f"own.yaml:{number}: A is ")
+    assert found.endswith("points are in metres, not in millimetres")
 
 
 def test_coefficients_that_follow_a_rule_of_the_source_may_be_left_out(tmp_path: Path) -> None:

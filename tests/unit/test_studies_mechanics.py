@@ -10,11 +10,12 @@ from typer.testing import CliRunner
 from hilplant.bench import load_bench
 from hilplant.cli import app
 from hilplant.failure import Failure
-from hilplant.models.tables import GRAVITY
+from hilplant.models.tables import GRAVITY, POINTS
 from hilplant.studies.crank_torque import WETNESS, Conditions, crank_torque
+from hilplant.studies.mechanics_command import solver_study
 from hilplant.studies.mechanics_plots import plot_conditions, plot_torque
 from hilplant.studies.thesis_checks import Check, thesis_checks
-from hilplant.studies.whole_system import five_wipes
+from hilplant.studies.whole_system import five_wipes, shape_difference
 from hilplant.studies.wiping import demands, wiping
 from hilplant.units import TURN_RAD
 
@@ -54,6 +55,19 @@ def _without_force(row: np.ndarray) -> np.ndarray:
     return changed
 
 
+def test_what_is_called_friction_is_what_the_formulas_give() -> None:
+    """Wet and without wind: |J| F mu(|J w|) of both blades, (4.50) written out once more."""
+    still, *_ = five_wipes(BENCH)
+    knots, ways = np.linspace(0.0, TURN_RAD, len(BENCH.tables)), np.abs(BENCH.tables[:, POINTS : POINTS + 2, 0])
+    curve, force = BENCH.parameters.load.friction, BENCH.parameters.load.left_blade.force_n
+    v = np.minimum(1000.0 * ways * TURN_RAD, curve.velocity_limit_mm_s)
+    stribeck = curve.wet_1 * (np.tanh(curve.wet_2 * v) - np.tanh(curve.wet_3 * v))
+    level = curve.wet_4 * np.tanh(curve.wet_5 * v) - curve.wet_6 * v
+    torque = np.sum(ways * force * (curve.wet_7 * force + curve.wet_4) * (stribeck + level), axis=1)
+    smooth = np.abs(np.interp(still.crank_rad, knots, ways.min(axis=1))) > 0.03
+    assert still.friction_n_m[smooth] == pytest.approx(np.interp(still.crank_rad, knots, torque)[smooth], rel=1e-3)
+
+
 def test_drag_takes_from_the_forward_wipe_what_it_adds_to_the_reverse_one() -> None:
     """Over a whole turn a constant drag does no work, so the mean torque changes by friction alone."""
     still, _, fast, *_ = five_wipes(BENCH)
@@ -79,6 +93,18 @@ def test_the_wiper_is_faster_on_more_volts_on_wet_glass_and_on_the_fast_brush() 
 def test_a_wiper_that_stands_makes_no_cycles(tmp_path: Path) -> None:
     rows = wiping(BENCH, (1.0,))
     assert [row.cycles_per_minute for row in rows if row.screen == "dry"] == [0.0, 0.0]
+
+
+def test_a_load_without_friction_has_no_shape_to_compare() -> None:
+    still, *_, dry = five_wipes(load_bench("polynomial"))
+    assert shape_difference(dry, still) == 0.0
+
+
+def test_the_step_is_judged_apart_from_the_park_circuit() -> None:
+    """A bench whose park circuit would run on to park when switched off is within the bound as well."""
+    figures, within = solver_study("mechanical")
+    assert within
+    assert figures["park_angle_rms_percent"] < 0.05
 
 
 @pytest.mark.parametrize("draw", [plot_torque, plot_conditions])
