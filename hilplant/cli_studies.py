@@ -80,6 +80,27 @@ def study_solver(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None
     raise typer.Exit(0 if within else 1)
 
 
+@study_app.command("twin", epilog="Example: hilplant study twin --seeds 100 --full 5 --json twin.json")
+def study_twin(
+    bench: BenchName = DEFAULT,
+    seeds: Annotated[int, typer.Option(help="noises for the last stage alone; minutes for 100", min=0)] = 10,
+    full: Annotated[int, typer.Option(help="noises for all three stages", min=0)] = 1,
+    compare: Annotated[bool, typer.Option("--compare", help="also compare the global searches")] = False,
+    json_file: JsonFile = None,
+) -> None:
+    """Identify data of a known bench, and hold the result against the truth.
+
+    Exit code 1 when errors or intervals are worse than they are to be.
+    """
+    from hilplant.bench import load_bench
+    from hilplant.identify.twin_study import twin_study
+
+    claim(json_file)
+    good, figures = twin_study(load_bench(bench), (seeds, full), compare, typer.echo)
+    write_json(json_file, figures)
+    raise typer.Exit(0 if good else 1)
+
+
 @study_app.command("wiping", epilog="Example: hilplant study wiping default")
 def study_wiping(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
     """Tell cycles a minute and currents from 9 to 16 V, dry and wet.
@@ -90,6 +111,24 @@ def study_wiping(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None
 
     claim(json_file)
     write_json(json_file, wiping_study(bench))
+
+
+@study_app.command("surrogates", epilog="Example: hilplant study surrogates --seconds 600 --out study")
+def study_surrogates(
+    seconds: Annotated[float, typer.Option(min=40.0, help="how long each model drives the bus")] = 600.0,
+    out: Annotated[Path | None, typer.Option(help="folder for the picture")] = None,
+    json_file: JsonFile = None,
+) -> None:
+    """Compare cost and accuracy of all loads and motors, and what an ECU sees of them.
+
+    Exit code 1 when a network is not as good as the physical plant to the ECU.
+    """
+    from hilplant.studies.surrogate_study import surrogates_study
+
+    claim(json_file)
+    kept, figures = surrogates_study(seconds, out)
+    write_json(json_file, figures)
+    raise typer.Exit(0 if kept else 1)
 
 
 @plot_app.command("recording", epilog="Example: hilplant plot recording run.hilrec run.png")

@@ -3,7 +3,9 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import typer
 
@@ -11,11 +13,11 @@ from hilplant.bench import Bench, load_bench
 from hilplant.bus.interface import TransportError
 from hilplant.failure import Failure
 from hilplant.recording.recorder import start_recorder
-from hilplant.runtime.loop import ROW_WIDTH
+from hilplant.runtime.loop import ROW_WIDTH, Control
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.scheduling import Privilege
 from hilplant.runtime.server import Summary, serve
-from hilplant.units import MILLISECOND_NS
+from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 #: Counts that the line before the faults has told already.
 _NO_FAULTS = ("tick", "overruns", "worst_latency_us")
@@ -41,15 +43,28 @@ def recording(bench: Bench, path: Path | None) -> Iterator[Ring | None]:
         ring.close()
 
 
-def run_daemon(name: str, seconds: float | None, record: Path | None, channel: str | None) -> Summary:
+class Inside(NamedTuple):
+    """A velocity controller inside the loop: its name in the catalogue, and the wanted speed as it is written."""
+
+    controller: str
+    reference: str
+
+
+def run_daemon(
+    name: str, seconds: float | None, record: Path | None, channel: str | None, inside: Inside | None = None
+) -> Summary:
     """Serve a bench and say on the terminal how it started and how it ended."""
     bench = load_bench(name)
     if channel is not None:
         bench = replace(bench, interface={**bench.interface, "channel": channel})
+    control: Control | None = None
+    if inside is not None:
+        bench, control = seated(bench, inside)
     summary: Summary | None = None
     try:
         with recording(bench, record) as ring:
-            summary = serve(bench, seconds, ring, on_start=lambda privileges: _say_start(bench, privileges))
+            on_start = partial(_say_start, bench)
+            summary = serve(bench, seconds, ring, on_start=on_start, control=control)
     except Failure as failure:
         if summary is None:
             raise
@@ -57,6 +72,23 @@ def run_daemon(name: str, seconds: float | None, record: Path | None, channel: s
         typer.echo(str(failure), err=True)
     _say_end(summary, record)
     return summary
+
+
+def seated(bench: Bench, inside: Inside) -> tuple[Bench, Control]:
+    """Return the bench as a controller inside its loop needs it, and what its loop calls.
+
+    Relays and supply are the controller's alone, so nobody waits for frames that command them; what else such a frame
+    carries is taken as before.
+    """
+    from hilplant.control.catalogue import controller_named, without_network  # slow to load, and seldom wanted
+    from hilplant.control.reference import parse_reference
+    from hilplant.control.seat import COMMANDED, LoopSeat
+
+    reference = parse_reference(inside.reference)
+    controller = controller_named(inside.controller, bench.parameters.motor, bench.step_ns / SECOND_NS)
+    seat = LoopSeat(controller, without_network(), reference, bench.parameter_row)
+    received = (replace(m, timeout_ns=0) if COMMANDED & set(m.targets) else m for m in bench.receive)
+    return replace(bench, receive=tuple(received)), seat.drive
 
 
 def _say_start(bench: Bench, privileges: list[Privilege]) -> None:

@@ -43,10 +43,17 @@ def _factor(name: str, meaning: str) -> Signal:
     return Signal(name, "", 0.0, 100.0, meaning, default=1.0)
 
 
+def _in_charge(name: str, meaning: str) -> Signal:
+    return Signal(name, "", 0.0, len(IN_CHARGE) - 1.0, meaning, "choice", choices=IN_CHARGE)
+
+
 SIDES = ("left", "right")
 
 #: Wetness of the screen, from 0 to 1: friction changes from the dry curve to the tacky one and from there to the wet.
 SCREENS = (("dry", 0.0), ("tacky", 0.5), ("wet", 1.0))
+#: Which model gives the load's torque or moves the motor: physical (there is no network, or it has not been asked),
+#: network; or the physical one because the motor stands, or because the network was not trained for what is asked.
+IN_CHARGE = ("physical", "network", "standstill", "outside")
 MODES = ("waiting", "running", "safe", "degraded", "stopped")
 STALK_POSITIONS = ("off", "intermittent", "slow", "fast")
 ECU_STATES = (
@@ -81,7 +88,7 @@ INPUTS = (
 #: What the plant shows at each tick, after the inputs of that tick and before the motor moves on.
 OUTPUTS = (
     Signal("supply_v", "V", 0.0, 40.0, "supply voltage in this tick"),
-    Signal("terminal_v", "V", -40.0, 40.0, "voltage from the connected brush to the common one; 0 when shorted or open"),
+    Signal("terminal_v", "V", -40.0, 40.0, "voltage from the connected brush to the common one; 0 if shorted or open"),
     Signal("current_a", "A", -500.0, 500.0, "armature current, positive from the brush to ground"),
     Signal("motor_speed_rad_s", "rad/s", -2000.0, 2000.0, "speed of the motor shaft"),
     Signal("crank_speed_rad_s", "rad/s", -200.0, 200.0, "speed of the crank"),
@@ -103,6 +110,8 @@ OUTPUTS = (
     Signal("terminal_31_v", "V", -40.0, 40.0, "terminal 31, common brush, against ground"),
     Signal("left_force_n", "N", 0.0, 1e6, "force of the left blade on the screen, less lift"),
     Signal("right_force_n", "N", 0.0, 1e6, "force of the right blade on the screen, less lift"),
+    _in_charge("load_mode", "which model gives the torque of the load, and why"),
+    _in_charge("motor_mode", "which model moves the motor, and why"),
 )
 
 #: How the server itself fares. Counts saturate in the frames that carry them, not here.

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.bench.load_files import PolynomialFile, TorqueFile
+from hilplant.bench.motor_model import motor_model, row_of_networks
 from hilplant.bench.parts import MotorFile
 from hilplant.bench.place import Place
 from hilplant.bench.plant_description import (
@@ -15,9 +17,10 @@ from hilplant.bench.plant_description import (
     ParkSwitchSection,
     PlantSection,
     PolynomialLoad,
-    ReducedLoad,
+    WholeWiper,
 )
 from hilplant.bench.screen_parts import ScreenFile
+from hilplant.bench.trained_load import Around, TrainedLoad, keeps_its_bounds, read_trained_load
 from hilplant.bench.wiper import SIDES, Mechanics, Surroundings, read_mechanics
 from hilplant.failure import Failure
 from hilplant.mechanics.coefficients import Aerodynamics, check_aerodynamics
@@ -40,6 +43,7 @@ class Plant:
     screen: ScreenFile | None
     blades: Blades | None
     mechanics: Mechanics
+    load_file: TorqueFile | PolynomialFile | None = None
 
 
 def assemble_plant(place: Place, step_ns: int) -> Plant | None:
@@ -49,14 +53,23 @@ def assemble_plant(place: Place, step_ns: int) -> Plant | None:
     load = _load(place)
     screen, blades = _screen(place.inner("screen")), _blades(place.inner("blades"))
     park_switch = _park_switch(place.inner("park_switch"), step_ns)
-    complete = not isinstance(load, ReducedLoad) or _has_screen_and_blades(place)
+    complete = not isinstance(load, WholeWiper) or _has_screen_and_blades(place)
     mechanics = read_mechanics(place.inner("linkage"), _surroundings(place, load, screen, blades))
     if motor is None or mechanics is None or load is None or park_switch is None or not complete:
         return None
-    record = _load_record(load, screen, blades)
+    trained = read_trained_load(place.inner("load"), load, Around(mechanics, screen, blades))
+    mover = motor_model(place, motor, step_ns)
+    if trained is None or mover is None:
+        return None
+    record = _load_record(load, trained, screen, blades)
     left, right = mechanics.wiper.left.arm, mechanics.wiper.right.arm
-    parameters = Parameters(step_ns / SECOND_NS, motor.record(), park_switch, record, left, right)
-    return Plant(parameters, mechanics.table, motor, load, screen, blades, mechanics)
+    networks = row_of_networks(trained.numbers, mover.numbers)
+    parameters = Parameters(
+        step_ns / SECOND_NS, motor.record(), park_switch, record, left, right, mover.place, networks
+    )
+    if not keeps_its_bounds(place.inner("load"), trained, parameters, mechanics.table):
+        return None
+    return Plant(parameters, mechanics.table, motor, load, screen, blades, mechanics, trained.file)
 
 
 def _motor(place: Place) -> MotorFile | None:
@@ -101,10 +114,11 @@ def _load(plant: Place) -> AnyLoad | None:
 
 
 def _has_screen_and_blades(plant: Place) -> bool:
+    kind = plant.inner("load", "model").data()
     missing = [key for key in ("screen", "blades") if plant.inner(key).data() is None]
     for key in missing:
         written = (*plant.location, key) in plant.document.places
-        plant.note(key if written else "load", text=f"the reduced load needs {key} beside it")
+        plant.note(key if written else "load", text=f"the {kind} load needs {key} beside it")
     return not missing
 
 
@@ -115,18 +129,19 @@ def _surroundings(plant: Place, load: AnyLoad | None, screen: ScreenFile | None,
         blades=plant.inner("blades"),
         screen_angle_rad=screen.angle_rad if screen is not None else 0.0,
         air=(left, right),
-        points=load.points if isinstance(load, ReducedLoad) else 1,
-        needs_masses=isinstance(load, ReducedLoad),
+        points=load.points if isinstance(load, WholeWiper) else 1,
+        needs_masses=isinstance(load, WholeWiper),
     )
 
 
-def _load_record(load: AnyLoad, screen: ScreenFile | None, blades: Blades | None) -> Load:
+def _load_record(load: AnyLoad, trained: TrainedLoad, screen: ScreenFile | None, blades: Blades | None) -> Load:
+    constants = trained.file if isinstance(trained.file, PolynomialFile) else load
     left, right = (Blade(entry.force_n, entry.wear) for entry in blades) if blades is not None else (Blade(), Blade())
     return Load(
         float(LOADS.index(load.model)),
-        c1=load.c1 if isinstance(load, PolynomialLoad) else 0.0,
-        c2=load.c2 if isinstance(load, PolynomialLoad) else 0.0,
-        points=float(load.points) if isinstance(load, ReducedLoad) else 1.0,
+        c1=constants.c1 or 0.0 if isinstance(constants, PolynomialFile | PolynomialLoad) else 0.0,
+        c2=constants.c2 or 0.0 if isinstance(constants, PolynomialFile | PolynomialLoad) else 0.0,
+        points=float(load.points) if isinstance(load, WholeWiper) else 1.0,
         friction=screen.friction() if screen is not None else Friction(),
         left_blade=left,
         right_blade=right,

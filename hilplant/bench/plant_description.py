@@ -15,6 +15,7 @@ class PlantSection(Checked):
     """What stands on the bench."""
 
     motor: Name
+    motor_model: Group | None = None
     linkage: Name
     screen: Name | None = None
     blades: Group | None = None
@@ -29,21 +30,42 @@ class NoLoad(Checked):
 
 
 class PolynomialLoad(Checked):
-    """No-load torque fitted over angle and speed, (6.1)-(6.3)."""
+    """No-load torque fitted over angle and speed, (6.1)-(6.3): the published one, or that of a trained file."""
 
     model: Literal["polynomial"]
-    c1: NotNegative
-    c2: NotNegative
+    c1: NotNegative | None = None
+    c2: NotNegative | None = None
+    file: Name | None = None
+
+    @model_validator(mode="after")
+    def _one_or_the_other(self) -> Self:
+        for key in ("c1", "c2"):
+            if (getattr(self, key) is None) == (self.file is None):
+                text = f"key '{key}' is missing" if self.file is None else f"{key} is given beside the file that has it"
+                raise wrong("model" if self.file is None else key, text=text)
+        return self
 
 
-class ReducedLoad(Checked):
-    """The whole wiper, reduced to the crank; friction acts at `points` points of each blade."""
+class WholeWiper(Checked):
+    """A load that is the whole wiper; friction acts at `points` points of each blade."""
 
-    model: Literal["reduced"]
     points: Annotated[int, Field(ge=1, le=64)] = 1
 
 
-AnyLoad = NoLoad | PolynomialLoad | ReducedLoad
+class ReducedLoad(WholeWiper):
+    """The whole wiper, reduced to the crank."""
+
+    model: Literal["reduced"]
+
+
+class NetworkLoad(WholeWiper):
+    """A network trained for the whole wiper, and the reduced load where the network was not trained."""
+
+    model: Literal["network"]
+    file: Name
+
+
+AnyLoad = NoLoad | PolynomialLoad | ReducedLoad | NetworkLoad
 
 
 class LoadChoice(Checked):
@@ -80,6 +102,14 @@ class BladeEntry(WithAssumptions):
         if not isinstance(written, list) or not all(map(_is_pair, written)):
             raise wrong(text="drag and lift are each a number, or a list of pairs [arm angle in deg, number]")
         return tuple((float(angle), float(number)) for angle, number in written)
+
+    @model_validator(mode="after")
+    def _air_has_an_area_to_act_on(self) -> Self:
+        """Refuse a coefficient that would do nothing because the area was left out."""
+        for key in ("drag", "lift"):
+            if getattr(self, key) != 0.0 and "area_m2" not in self.model_fields_set:
+                raise wrong(key, text=f"{key} needs area_m2 beside it, the area of the blade; without it no wind acts")
+        return self
 
 
 def _is_number(written: Any) -> bool:

@@ -11,9 +11,11 @@ from hilplant.bench.assembly import Bench
 from hilplant.bench.checked import Checked
 from hilplant.bench.parts import assumed_in
 from hilplant.bench.plant import Plant
+from hilplant.bench.plant_description import NetworkLoad, WholeWiper
 from hilplant.bench.wiper import SIDES
 from hilplant.mechanics.design_points import projection_loss
 from hilplant.models.circuit import CIRCUITS
+from hilplant.models.motor_choice import NARX
 from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
 from hilplant.units import RAD_PER_DEG, SECOND_NS
 
@@ -62,7 +64,7 @@ def summary_lines(bench: Bench) -> list[str]:
     """Return the figures of a bench as lines for people."""
     made, plant = summarise(bench), bench.plant
     names = [
-        ("motor", f"{plant.motor.name} ({plant.motor.status}), gear {plant.motor.gear_ratio:g}"),
+        ("motor", _motor(plant)),
         ("linkage", f"{plant.mechanics.written.name} ({plant.mechanics.written.status})"),
         ("sweep", f"left {made.left_sweep_deg:.3f} deg, right {made.right_sweep_deg:.3f} deg"),
         ("dead point", _closeness(plant)),
@@ -105,12 +107,18 @@ def _worst_loss(plant: Plant) -> tuple[str, float]:
     return max(losses.items(), key=lambda item: item[1])
 
 
+def _motor(plant: Plant) -> str:
+    network = ", a network where it reaches" if plant.parameters.motor_model == NARX else ""
+    return f"{plant.motor.name} ({plant.motor.status}), gear {plant.motor.gear_ratio:g}{network}"
+
+
 def _load(plant: Plant) -> str:
-    if plant.load.model != "reduced" or plant.blades is None or plant.screen is None:
+    if not isinstance(plant.load, WholeWiper) or plant.blades is None or plant.screen is None:
         return plant.load.model
     left, right = (entry.force_n for entry in plant.blades)
     points = f"{plant.load.points} point{'s' if plant.load.points > 1 else ''}"
-    return f"reduced, screen {plant.screen.name}, {left:g} N left and {right:g} N right at {points} of each blade"
+    model = "network, where it does not reach reduced" if isinstance(plant.load, NetworkLoad) else plant.load.model
+    return f"{model}, screen {plant.screen.name}, {left:g} N left and {right:g} N right at {points} of each blade"
 
 
 def _rate(made: Summary) -> str:

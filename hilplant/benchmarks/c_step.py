@@ -21,6 +21,7 @@ Rows = NDArray[np.float64]
 SimulateRows = Callable[[Rows, Rows, Rows, Rows, Rows], None]
 
 _SOURCE = Path(__file__).with_name("step.c")
+_WITH_NETWORKS = Path(__file__).with_name("networks.c")
 _DOUBLES = ctypes.POINTER(ctypes.c_double)
 
 
@@ -59,10 +60,21 @@ def compile_batch(folder: Path, columns: Sequence[int], *more_flags: str) -> Sim
     return simulate
 
 
-def _library(folder: Path, more_flags: tuple[str, ...]) -> ctypes.CDLL:
+def compile_networks(folder: Path, *more_flags: str) -> SimulateRows:
+    """Compile networks.c into `folder` and return its loop, for benches with a torque or a motor network."""
+    function = _library(folder, more_flags, _WITH_NETWORKS).simulate_networks
+
+    def simulate(state: Rows, inputs: Rows, parameters: Rows, tables: Rows, outputs: Rows) -> None:
+        arrays = (state, inputs, parameters, tables, outputs)
+        function(*_addresses(arrays), _shape(arrays))
+
+    return simulate
+
+
+def _library(folder: Path, more_flags: tuple[str, ...], source: Path = _SOURCE) -> ctypes.CDLL:
     compiler()
-    library = folder / f"step{''.join(more_flags)}.so"
-    command = ["gcc", *FLAGS, *more_flags, "-shared", "-fPIC", str(_SOURCE), "-o", str(library), "-lm"]
+    library = folder / f"{source.stem}{''.join(more_flags)}.so"
+    command = ["gcc", *FLAGS, *more_flags, "-shared", "-fPIC", str(source), "-o", str(library), "-lm"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)
     if ended.returncode:
         raise NotMeasurable(f"gcc: {(ended.stderr.strip() or 'no message').splitlines()[0]}")

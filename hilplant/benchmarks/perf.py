@@ -15,6 +15,7 @@ PARTS = {
     "simulate": "simulate_cost.measure",
     "batch": "batch_cost.measure",
     "torque-network": "torque_network.measure",
+    "networks": "networks_cost.measure",
     "tick": "tick_cost.measure",
     "tick-vcan": "tick_vcan.measure",
     "wakeup": "wakeup.measure",

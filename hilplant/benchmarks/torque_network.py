@@ -12,19 +12,17 @@ import numpy as np
 
 from hilplant.bench import load_bench
 from hilplant.benchmarks.c_step import FLAGS, Rows, compiler
-from hilplant.benchmarks.minute import mixed_minute
 from hilplant.benchmarks.results import Goal, Measured, NotMeasurable, Row
 from hilplant.benchmarks.samples import alternate
-from hilplant.simulation import simulate
 from hilplant.surrogates.samples import network_tangents
 from hilplant.units import SECOND_NS, TURN_RAD
 
 Tangents = Callable[[Rows, bool, Rows, Rows], None]
 
-_ROUNDS, _SAMPLES, _MINUTES = 40, 20_000, 10
+_ROUNDS, _SAMPLES = 40, 20_000
 _SOURCE = Path(__file__).with_name("torque_network.c")
 _DOUBLES = ctypes.POINTER(ctypes.c_double)
-_GOAL, _MINUTE_GOAL_MS, _THESIS_S = Goal(1.2), Goal(20.0, of_ratio=False), 5.92
+_GOAL = Goal(1.2)
 
 
 def compile_network(folder: Path) -> Tangents:
@@ -47,7 +45,7 @@ def compile_network(folder: Path) -> Tangents:
 
 
 def measure() -> Measured:
-    """Evaluate random states in turn by both, then simulate a minute with the network in place of the load."""
+    """Evaluate random states in turn by both."""
     bench = load_bench("network")
     numbers, random = np.ascontiguousarray(bench.parameters.networks), np.random.default_rng(1)
     states = np.column_stack([random.uniform(0.0, TURN_RAD, _SAMPLES), random.uniform(1.0, 7.0, _SAMPLES)])
@@ -56,29 +54,18 @@ def measure() -> Measured:
         ways = (network_tangents, compile_network(Path(folder)))
         seconds = alternate(_ROUNDS, *(lambda way=way: _timed_s(way, numbers, states, into) for way in ways))
     ours_ns, c_ns = (median(values) / _SAMPLES * SECOND_NS for values in seconds)
-    scenario = mixed_minute()
-    simulate(bench, scenario)
-    minutes = alternate(_MINUTES, lambda: _minute_s(lambda: simulate(bench, scenario)))[0]
     rows = [
         Row("torque network", ours_ns, "ns", c_ns, "C", _GOAL),
-        Row("60 s, network load", median(minutes) * 1e3, "ms", goal=_MINUTE_GOAL_MS),
     ]
     figures: dict[str, float | str] = {
         "torque_network_ns": ours_ns,
         "torque_network_c_ns": c_ns,
         "torque_network_ratio_to_c": ours_ns / c_ns,
-        "simulate_60s_hybrid_s": median(minutes),
     }
-    return Measured(rows, figures, [f"network load: {_THESIS_S / median(minutes):.0f} times as fast as the thesis' 5.92 s"])
+    return Measured(rows, figures)
 
 
 def _timed_s(way: Tangents, numbers: Rows, states: Rows, into: Rows) -> float:
     begin = time.perf_counter()
     way(numbers, False, states, into)
-    return time.perf_counter() - begin
-
-
-def _minute_s(run: Callable[[], object]) -> float:
-    begin = time.perf_counter()
-    run()
     return time.perf_counter() - begin

@@ -1,5 +1,6 @@
 """Observers for a motor: exact discretisation and constant Kalman gains, at construction time."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +30,7 @@ def armature(motor: Motor, fast: bool, load_inertia_kg_m2: float = 0.0) -> Armat
     return Armature(*brush, inertia, motor.damping_n_m_s, motor.gear_ratio)
 
 
+@lru_cache(maxsize=64)  # a Riccati equation each; many controllers believe in the same motor
 def model(believed: Armature, period_s: float, noise: Noise, speed_sensor: bool) -> Model:
     """Return a brush with its observer: x = (i, w, torque), torque held, gains from the discrete Riccati equation.
 

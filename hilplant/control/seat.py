@@ -11,7 +11,13 @@ from hilplant.control.reference import Reference
 from hilplant.jit import compiled
 from hilplant.models.plant import write
 from hilplant.models.records import Inputs, State, unpack_inputs, unpack_parameters, unpack_state
-from hilplant.units import SECOND_NS
+from hilplant.signals import INPUT_INDEX
+from hilplant.units import MILLISECOND_NS, SECOND_NS
+
+#: The plant's inputs that a controller commands, by index.
+COMMANDED = frozenset(INPUT_INDEX[name] for name in ("relay_on", "relay_fast", "supply_v"))
+#: A controller in the loop that was not asked for longer than this has been put aside: it begins anew.
+ASIDE_NS = 50 * MILLISECOND_NS
 
 
 class Seat:
@@ -41,12 +47,18 @@ class LoopSeat(Seat):
     def __init__(self, controller: Controller, tables: Tables, reference: Reference, parameter_row: Any) -> None:
         """Sit down beside a plant with these packed parameters."""
         super().__init__(controller, tables, reference)
-        self._parameter_row = parameter_row
+        self._parameter_row, self._asked_ns = parameter_row, 0
         plant = (np.zeros(len(State._fields)), parameter_row, np.zeros(len(Inputs._fields)))
         _drive(POWER_ON, 0.0, controller, tables, plant)
 
     def drive(self, now_ns: int, state_row: Any, input_row: Any) -> None:
-        """Take one tick on the loop's own rows; `input_row` gets the command. It is what ``Loop.control`` calls."""
+        """Take one tick on the loop's own rows; `input_row` gets the command. It is what ``Loop.control`` calls.
+
+        While the loop is in its safe state it does not ask; after that the controller begins anew, as on the bus.
+        """
+        if now_ns - self._asked_ns > ASIDE_NS:
+            self.forget()
+        self._asked_ns = now_ns
         wanted = self.reference(now_ns / SECOND_NS)
         plant = (state_row, self._parameter_row, input_row)
         self.memory = _drive(self.memory, wanted, self._controller, self._tables, plant)

@@ -12,19 +12,23 @@ from hilplant.ecu.sensing import Senses, sense
 from hilplant.ecu.vocabulary import RELAYS_OFF, Fault, Inputs, Relays, Settings
 
 _RESTING, _WIPING = frozenset(RESTING), frozenset(WIPING)
+_HELD_UP = frozenset((Phase.BLIND, Phase.BROWN_OUT))
 
 
 class State(NamedTuple):
     """What the controller remembers; the defaults are its state at power-on.
 
-    `since_s` is when the phase began, `turn_s` when the wiper last came to park or began to be driven. `fast` is
-    the speed at which it drives. `tries` counts what went wrong since the last sound turn or rest in park. `leaving`
-    says that it was started outside the park window, where it rests, and has not passed the window yet.
+    `since_s` is when the phase began, `turn_s` when the wiper last came to park or began to be driven. `driven_s` is
+    how long it had been driven when silence or the supply held it up: that counts on when it is taken up again, or a
+    blocked wiper behind a flickering message would be driven for ever. `fast` is the speed at which it drives.
+    `tries` counts what went wrong since the last sound turn or rest in park. `leaving` says that it was started
+    outside the park window, where it rests, and has not passed the window yet.
     """
 
     phase: Phase = Phase.OFF
     since_s: float = 0.0
     turn_s: float = 0.0
+    driven_s: float = 0.0
     fast: bool = False
     wipes_left: int = 1
     tries: int = 0
@@ -78,10 +82,12 @@ def _enter(state: State, row: Transition, view: View) -> State:
     """Return the state at the beginning of a phase."""
     was_driving, now_s = state.phase in _WIPING, view.now_s
     speed = SPEEDS.get(row.target)
+    if was_driving:
+        state = state._replace(driven_s=view.turning_s if row.target in _HELD_UP else 0.0)
     state = state._replace(
         phase=row.target,
         since_s=now_s,
-        turn_s=state.turn_s if was_driving else now_s,
+        turn_s=state.turn_s if was_driving else now_s - state.driven_s,
         fast=(was_driving and state.fast) if speed is None else speed,
         tries=state.tries + row.failed,
         fault=row.fault or state.fault,
@@ -93,7 +99,7 @@ def _enter(state: State, row: Transition, view: View) -> State:
         return state._replace(wipes_left=1)
     if row.target is Phase.LOCKOUT:
         return state._replace(latched_demand=view.stalk.demands)
-    return state._replace(tries=0) if Phase.LOCKOUT in row.sources else state
+    return state._replace(tries=0, driven_s=0.0) if Phase.LOCKOUT in row.sources else state
 
 
 def _forgive(state: State, turned_s: float, now_s: float, settings: Settings) -> State:
@@ -104,4 +110,4 @@ def _forgive(state: State, turned_s: float, now_s: float, settings: Settings) ->
     else:
         parked_s = now_s if settings.rests_open else now_s - senses.closed_s
         sound = state.phase in _RESTING and min(parked_s, now_s - state.since_s) >= settings.settle_s
-    return state._replace(tries=0, fault=Fault.NONE) if sound else state
+    return state._replace(tries=0, fault=Fault.NONE, driven_s=0.0) if sound else state

@@ -28,7 +28,9 @@ def admit(state: State, inputs: Inputs) -> tuple[State, Inputs]:
         last_torque_n_m=0.0,
         last_current_a=0.0,
         last_speed_rad_s=0.0,
-        motor_memory=0.0,
+        last_brush=0.0,
+        motor_mode=0.0,
+        load_mode=0.0,
     )
     safe = Inputs(
         relay_on=0.0,
@@ -71,9 +73,8 @@ def hold_if_wrong(state: State, last_angle: float) -> State:
     """
     if spoilt_state(state) == 0.0 and state.guard == 0.0:
         return state
-    return State(
-        0.0, 0.0, last_angle, state.park_contact, state.bounce_left, 1.0, state.park_phase, 0.0, 0.0, 0.0, 0.0, 0.0
-    )
+    contact, bounce_left, phase = state.park_contact, state.bounce_left, state.park_phase
+    return State(0.0, 0.0, last_angle, contact, bounce_left, 1.0, phase, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @compiled

@@ -15,13 +15,17 @@ from hilplant.models import tables as channel
 from hilplant.models.friction import coefficient
 from hilplant.models.lookup import Interval, derivative, value
 from hilplant.models.polynomial import torque_over_speed
-from hilplant.models.records import Blade, Inputs, Load
+from hilplant.models.records import Blade, Inputs, Load, Parameters
+from hilplant.surrogates.torque_network import NETWORK as BY_NETWORK
+from hilplant.surrogates.torque_network import Tangent, reaches
+from hilplant.units import TURN_RAD
 
 #: Names of the models; ``Load.model`` is the place in this list.
-LOADS = ("none", "polynomial", "reduced")
+LOADS = ("none", "polynomial", "reduced", "network")
 
 POLYNOMIAL = LOADS.index("polynomial")
 REDUCED = LOADS.index("reduced")
+NETWORK = LOADS.index("network")
 
 #: Speed of the crank [rad/s] below which friction is as at this speed: the steep ends of the curves stand for
 #: static friction, which the step treats as what it is.
@@ -61,15 +65,35 @@ class Pressing(NamedTuple):
 
 
 @compiled
-def resist(crank: Crank, load: Load, inputs: Inputs) -> Resistance:
-    """Return the load where the crank is, for speeds near the one that it has."""
-    if load.model == REDUCED:
+def resist(crank: Crank, parameters: Parameters, inputs: Inputs) -> Resistance:
+    """Return the physical load where the crank is, for speeds near the one that it has."""
+    load = parameters.load
+    if load.model >= REDUCED:
         return reduced(crank, load, inputs)
-    return by_speed(crank.angle_rad, crank.speed_rad_s, load, inputs)
+    return by_speed(crank.angle_rad, crank.speed_rad_s, load, inputs, parameters.networks)
 
 
 @compiled
-def by_speed(crank_angle_rad: float, crank_speed_rad_s: float, load: Load, inputs: Inputs) -> Resistance:
+def resist_as(mode: float, tangent: Tangent, crank: Crank, parameters: Parameters, inputs: Inputs) -> Resistance:
+    """Return the load from the model in charge; the physical one also where the network's speeds do not reach.
+
+    The network gives the torque at even speed at the tick's start, and its tangent what it becomes within the tick:
+    that is 1e-4 N m from the network itself and half as dear. The table gives the inertia. The torque is all bias: the
+    network is never in charge at standstill or in reverse, where it matters what of the torque is friction.
+    """
+    if mode == BY_NETWORK and reaches(parameters.networks, crank.speed_rad_s):
+        on = crank.angle_rad - tangent.angle_rad
+        on = on + TURN_RAD if on < -0.5 * TURN_RAD else on
+        faster = crank.speed_rad_s - tangent.speed_rad_s
+        torque = tangent.torque_n_m + tangent.by_angle * on + tangent.by_speed * faster
+        return Resistance(value(crank.tables, crank.place, channel.INERTIA), torque, 0.0, 0.0)
+    return resist(crank, parameters, inputs)
+
+
+@compiled
+def by_speed(
+    crank_angle_rad: float, crank_speed_rad_s: float, load: Load, inputs: Inputs, networks: Any
+) -> Resistance:
     """Return the loads that have no tables: none, and the polynomial as torque over speed.
 
     The quotient cannot become negative (footnote 16 of Dooner 2016: the load must not drive the motor), so that the
@@ -77,7 +101,7 @@ def by_speed(crank_angle_rad: float, crank_speed_rad_s: float, load: Load, input
     """
     slope = 0.0
     if load.model == POLYNOMIAL:
-        slope = max(0.0, torque_over_speed(crank_angle_rad, crank_speed_rad_s, load.c1, load.c2))
+        slope = max(0.0, torque_over_speed(crank_angle_rad, crank_speed_rad_s, load, networks))
     return Resistance(0.0, 0.0, inputs.brake_torque_n_m, slope)
 
 

@@ -6,8 +6,9 @@ from hilplant.jit import compiled
 from hilplant.models.armature import Motion
 from hilplant.models.circuit import connect, next_phase
 from hilplant.models.guard import admit, hold_if_wrong
-from hilplant.models.load import Crank, Resistance, left_pressing, resist, right_pressing
+from hilplant.models.load import NETWORK, Crank, Resistance, left_pressing, resist_as, right_pressing
 from hilplant.models.lookup import derivative, find, value, within_turn
+from hilplant.models.motor_choice import move
 from hilplant.models.park_switch import contact_now
 from hilplant.models.records import (
     Inputs,
@@ -18,8 +19,10 @@ from hilplant.models.records import (
     unpack_parameters,
     unpack_state,
 )
-from hilplant.models.shaft import Train, load_torque, turn
+from hilplant.models.shaft import Train, load_torque
 from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
+from hilplant.surrogates.torque_network import NETWORK as BY_NETWORK
+from hilplant.surrogates.torque_network import NO_TANGENT, PHYSICAL, load_in_charge, network_tangent
 
 
 @compiled
@@ -47,28 +50,41 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     connection = connect(inputs, parameters, contact, phase, state)
     # 4 kinematics and load at this instant
     motion = Motion(state.current_a if connection.closed > 0.5 else 0.0, state.motor_speed_rad_s, 0.0)
-    train = Train(connection, tables, inputs, parameters)
+    load_mode, tangent = PHYSICAL, NO_TANGENT
+    if parameters.load.model == NETWORK:
+        load_mode = load_in_charge(parameters.networks, speed, inputs, state.load_mode)
+    if load_mode == BY_NETWORK:
+        tangent = network_tangent(parameters.networks, angle, speed, inputs.screen == 1.0)
+    train = Train(connection, tables, inputs, parameters, load_mode, tangent)
     crank = Crank(tables, find(tables, angle), angle, speed)
-    load = resist(crank, parameters.load, inputs)
-    outputs = measured(motion, crank, load, contact.shown, state.guard, train)
+    load = resist_as(load_mode, tangent, crank, parameters, inputs)
     # 5 motor and load together to the next tick
-    motion = turn(motion, angle, load, train)
+    after, memory = move(motion, angle, load, train, state)
+    outputs = measured(motion, crank, load, contact.shown, state.guard, train, memory.mode)
     # 6 guard
     following = State(
-        without_denormals(motion.current),
-        without_denormals(motion.speed),
-        within_turn(angle + motion.turned / parameters.motor.gear_ratio),
+        without_denormals(after.current),
+        without_denormals(after.speed),
+        within_turn(angle + after.turned / parameters.motor.gear_ratio),
         contact.closed,
         contact.bounce_left,
         state.guard,
         phase,
+        memory.terminal_v,
+        memory.torque_n_m,
+        memory.current_a,
+        memory.speed_rad_s,
+        memory.brush,
+        memory.mode,
+        load_mode,
     )
     return hold_if_wrong(following, angle), outputs
 
 
 @compiled
 def measured(  # noqa: PLR0913, PLR0917
-    motion: Motion, crank: Crank, load: Resistance, park_contact: float, guard: float, train: Train
+    motion: Motion, crank: Crank, load: Resistance, park_contact: float, guard: float, train: Train,
+    motor_mode: float,
 ) -> Outputs:
     """Return what can be seen of the plant at this instant."""
     inputs, parameters, connection = train.inputs, train.parameters, train.connection
@@ -98,6 +114,8 @@ def measured(  # noqa: PLR0913, PLR0917
         terminal_31_v=connection.terminal_31_v,
         left_force_n=left_pressing(crank, parameters.load, inputs).force_n,
         right_force_n=right_pressing(crank, parameters.load, inputs).force_n,
+        load_mode=train.load_mode,
+        motor_mode=motor_mode,
     )
 
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hilplant.jit import compiled
+from hilplant.jit import compiled, compiled_with_arrays
 
 
 class Brush(NamedTuple):
@@ -141,7 +141,9 @@ class State(NamedTuple):
     last_torque_n_m: float = 0.0
     last_current_a: float = 0.0
     last_speed_rad_s: float = 0.0
-    motor_memory: float = 0.0  # whose these four are, see surrogates/narx.py
+    last_brush: float = 0.0  # whose these four are: 1 slow, 2 fast, 0 nothing that the network could go on from
+    motor_mode: float = 0.0  # who moved the motor, the place in surrogates/narx.py MODES
+    load_mode: float = 0.0  # who gave the torque, the place in signals.IN_CHARGE
 
 
 class Inputs(NamedTuple):
@@ -187,6 +189,8 @@ class Outputs(NamedTuple):
     terminal_31_v: float
     left_force_n: float
     right_force_n: float
+    load_mode: float
+    motor_mode: float
 
 
 def pack(record: tuple[Any, ...]) -> NDArray[np.float64]:
@@ -203,7 +207,7 @@ MODEL_AT = 19
 POINTS_AT = 22
 
 
-@compiled
+@compiled_with_arrays
 def unpack_parameters(row: Any) -> Parameters:
     """Give the elements of a packed row their names back; the inverse of :func:`pack`."""
     slow = Brush(row[1], row[2], row[3])
@@ -231,7 +235,8 @@ def unpack_load(row: Any) -> Load:
 def unpack_state(row: Any) -> State:
     """Name the elements of a packed state."""
     return State(
-        row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], row[9], row[10], row[11]
+        row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], row[9], row[10], row[11],
+        row[12], row[13],
     )  # fmt: skip
 
 

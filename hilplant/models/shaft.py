@@ -13,10 +13,11 @@ from hilplant.jit import compiled
 from hilplant.models.armature import Drive, Motion, acceleration
 from hilplant.models.circuit import Connection
 from hilplant.models.gear import held_torque, through_gear
-from hilplant.models.load import REDUCED, Crank, Resistance, by_speed, reduced
+from hilplant.models.load import REDUCED, Crank, Resistance, by_speed, resist_as
 from hilplant.models.lookup import find, within_turn
 from hilplant.models.motor import Hold, advance, direction_of, half_period, slide, stand, stick
 from hilplant.models.records import Inputs, Parameters
+from hilplant.surrogates.torque_network import Tangent
 
 #: In one stretch the speed changes by this part of itself at most ...
 CHANGE = 0.25
@@ -37,6 +38,8 @@ class Train(NamedTuple):
     tables: Any
     inputs: Inputs
     parameters: Parameters
+    load_mode: float  # who gives the torque of the load, see signals.IN_CHARGE
+    tangent: Tangent  # of the torque network, while it does
 
 
 class Ahead(NamedTuple):
@@ -68,11 +71,12 @@ def load_torque(motion: Motion, load: Resistance, train: Train) -> float:
 @compiled
 def turn(motion: Motion, crank_angle_rad: float, load: Resistance, train: Train) -> Motion:
     """Return the motion one step later; `load` is that at the start."""
-    if train.parameters.load.model == REDUCED:
+    if train.parameters.load.model >= REDUCED:
         return turn_in_stretches(motion, crank_angle_rad, load, train)
     duration, crank_speed = train.parameters.step_s, motion.speed / train.parameters.motor.gear_ratio
     half_way = crank_angle_rad + 0.5 * duration * crank_speed
-    held = by_speed(half_way, crank_speed, train.parameters.load, train.inputs)
+    parameters = train.parameters
+    held = by_speed(half_way, crank_speed, parameters.load, train.inputs, parameters.networks)
     return advance(motion, drive_at(motion, 1.0, held, train), duration)
 
 
@@ -96,7 +100,7 @@ def turn_in_stretches(motion: Motion, crank_angle_rad: float, load: Resistance, 
         ahead = look_ahead(motion, drive, direction, left, train)
         angle = within_turn(crank_angle_rad + ahead.half_way.turned / ratio)
         crank = Crank(train.tables, find(train.tables, angle), angle, ahead.half_way.speed / ratio)
-        load = reduced(crank, train.parameters.load, train.inputs)
+        load = resist_as(train.load_mode, train.tangent, crank, train.parameters, train.inputs)
         if direction == 0.0:
             motion, taken, direction = let_go(motion, drive, load, left, train)
         else:

@@ -1,4 +1,4 @@
-"""The frames of a recording as python-can messages, and as logs that other tools read: BLF and ASC."""
+"""The frames of a recording as python-can messages, and the logs of other tools, written and read: BLF and ASC."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -6,6 +6,7 @@ from typing import Any
 
 import can
 
+from hilplant.failure import Failure
 from hilplant.recording.reader import Recording
 from hilplant.units import SECOND_NS
 
@@ -46,3 +47,20 @@ def write_frame_log(recording: Recording, out: Path) -> int:
             log.on_message_received(message)
             count += 1
     return count
+
+
+def logged_messages(path: Path) -> Iterator[can.Message]:
+    """Give every frame of a BLF or ASC file in its order.
+
+    Raises
+    ------
+    Failure
+        When the file is not such a log, or breaks off within a frame.
+    """
+    try:
+        with can.LogReader(path) as log:
+            yield from log
+    except OSError as error:
+        raise Failure(f"{path}: cannot be read: {error.strerror or error}") from error
+    except Exception as error:  # the readers of python-can let errors of every kind through
+        raise Failure(f"{path}: cannot be read as a {path.suffix[1:].upper()} log: {error}") from error

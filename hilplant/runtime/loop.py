@@ -36,6 +36,10 @@ _GUARD = OUTPUT_INDEX["guard"]
 _DEGRADED_FOR_NS = SECOND_NS
 
 
+#: A controller inside the loop: called with time [ns], state row and input row, it writes its command to the last.
+Control = Callable[[int, NDArray[np.float64], NDArray[np.float64]], None]
+
+
 class PlantRows(Protocol):
     """What the loop needs of a bench: the plant as flat rows, and what to do when things go wrong."""
 
@@ -80,8 +84,8 @@ class Loop:
     def __init__(self, plant: PlantRows, node: Node, clock: Clock, ring: Ring | None, on_overrun: str) -> None:
         self.progress = Progress()
         self.latency = Latency()
-        #: A controller inside the loop: called with time [ns], state row and input row, it writes its command there.
-        self.control: Callable[[int, NDArray[np.float64], NDArray[np.float64]], None] | None = None
+        #: Called in each tick in which no command is lost.
+        self.control: Control | None = None
         self._plant = plant
         self._node = node
         self._clock = clock

@@ -10,7 +10,7 @@ from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.node import LinkSettings, Node
 from hilplant.bus.transport import Transport, open_transport
 from hilplant.runtime.clock import Clock, WallClock
-from hilplant.runtime.loop import Loop, PlantRows
+from hilplant.runtime.loop import Control, Loop, PlantRows
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.scheduling import Privilege, real_time
 from hilplant.runtime.watchdog import Watchdog
@@ -128,14 +128,17 @@ def build_loop(bench: ServedBench, transport: Transport, clock: Clock, ring: Rin
     return Loop(bench, node, clock, ring, bench.loop.on_overrun)
 
 
-def serve(
+def serve(  # noqa: PLR0913, PLR0917
     bench: ServedBench,
     seconds: float | None = None,
     ring: Ring | None = None,
     stop: StopRequest | None = None,
     on_start: Callable[[list[Privilege]], None] | None = None,
+    control: Control | None = None,
 ) -> Summary:
     """Run the bench on its interface on the wall clock; returns when the time is up, a signal came or `stop` asks.
+
+    `control` is a controller inside the loop, beside those on the bus.
 
     Raises
     ------
@@ -148,6 +151,7 @@ def serve(
     transport = open_transport(bench.interface)
     try:
         loop = build_loop(bench, transport, WallClock(), ring)
+        loop.control = control
         loop.warm_up()
         watchdog = Watchdog()
         with ended_by_signals(stop), real_time(bench.loop.priority, bench.loop.cpu) as privileges:

@@ -56,7 +56,8 @@ def train(data: Record, neurons: int, seed: int = 1) -> Floats:
     """Fit a path by Levenberg-Marquardt from seeded weights; return it as ``control.network`` reads it.
 
     Voltage and current belong together as the controller sees them: the voltage is the one that was in force up to
-    the tick at which current and speed were taken.
+    the tick at which current and speed were taken. The last digits of the weights depend on where in memory the solver
+    works; the speeds agree to some 1e-9 rad/s from run to run.
     """
     before = np.concatenate([[0.0], data.voltage_v[:-1]])
     columns = [values[::SPARSE] for values in (before, data.current_a, data.speed_rad_s)]

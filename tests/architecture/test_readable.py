@@ -5,6 +5,8 @@ import re
 from pathlib import Path
 from typing import Any
 
+from hilplant.bench.sealed import flaw
+
 MOST_LINES = 350
 MOST_FUNCTION_LINES = 60
 BANNED = {"utils", "util", "manager", "handler", "process", "helper", "helpers", "misc", "common"}
@@ -13,6 +15,8 @@ STATUSES = {"measured", "identified", "published", "assumed"}
 PARAMETER_SETS = ("motors", "linkages", "screens", "measurements")
 #: Folders of config/ whose files say what to do, not what a thing is like.
 DESCRIPTIONS = ("benches", "scenarios")
+#: Folder of config/ whose files a command has written, each with a seal.
+TRAINED = "surrogates"
 
 
 def test_no_file_is_too_long_to_read(sources: list[Any], root: Path) -> None:
@@ -61,7 +65,15 @@ def test_every_shipped_parameter_set_has_source_and_status(root: Path) -> None:
 
 def test_every_folder_of_the_configuration_is_known_here(root: Path) -> None:
     folders = {path.name for path in (root / "config").iterdir() if path.is_dir()}
-    assert folders <= {*PARAMETER_SETS, *DESCRIPTIONS}
+    assert folders <= {*PARAMETER_SETS, *DESCRIPTIONS, TRAINED}
+
+
+def test_every_shipped_trained_file_is_as_its_command_has_written_it(root: Path) -> None:
+    files = sorted((root / "config" / TRAINED).glob("*.yaml"))
+    assert files
+    for path in files:
+        text = path.read_text(encoding="utf-8")
+        assert flaw(text, text.splitlines()[0].removeprefix("format: ")) == "", path.name
 
 
 def test_both_shipped_folders_are_in_the_wheel(root: Path) -> None:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hilplant.models.load import LOADS, by_speed
 from hilplant.models.lookup import derivative, find, value
 from hilplant.models.polynomial import C1, C2, forward_shape, reverse_shape
-from hilplant.models.records import Inputs, Load
+from hilplant.models.records import NO_NETWORKS, Inputs, Load
 
 #: Coefficients as printed, highest power first.
 F = ("-0.19224", "0.021769", "-0.15435", "0.077812", "0.68626")
@@ -21,11 +21,11 @@ FREE = Inputs(1.0, 0.0, 13.5, 0.0, 0.0, 0.0)
 
 
 def load_damping(angle: float, speed: float, load: Load) -> float:
-    return by_speed(angle, speed, load, FREE).slope
+    return by_speed(angle, speed, load, FREE, NO_NETWORKS).slope
 
 
 def load_torque(angle: float, speed: float, load: Load) -> float:
-    held = by_speed(angle, speed, load, FREE)
+    held = by_speed(angle, speed, load, FREE, NO_NETWORKS)
     assert (held.inertia, held.bias, held.dry) == (0.0, 0.0, 0.0)
     return held.slope * abs(speed)
 

@@ -12,6 +12,7 @@ from hilplant.models.lookup import find
 from hilplant.models.records import Arm, Blade, Brush, Friction, Inputs, Load, Motor, Parameters, ParkSwitch
 from hilplant.models.shaft import Train, turn
 from hilplant.studies.closed_form import ClosedFormWiper
+from hilplant.surrogates.torque_network import NO_TANGENT
 
 WIPER = ClosedFormWiper()
 TABLES = WIPER.tables(4096)
@@ -30,11 +31,12 @@ OPEN = Connection(SLOW, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 def train_of(motor: Motor, load: Load, inputs: Inputs, connection: Connection, step_s: float = STEP_S) -> Train:
     parameters = Parameters(step_s, motor, ParkSwitch(0.0, 0.1, 0.0, 0.0), load, Arm(0.0, 0.7), Arm(0.0, 0.5))
-    return Train(connection, TABLES, inputs, parameters)
+    return Train(connection, TABLES, inputs, parameters, 0.0, NO_TANGENT)
 
 
 def turned(motion: Motion, angle: float, train: Train) -> Motion:
-    load = resist(Crank(TABLES, find(TABLES, angle), angle, motion.speed / RATIO), train.parameters.load, train.inputs)
+    crank = Crank(TABLES, find(TABLES, angle), angle, motion.speed / RATIO)
+    load = resist(crank, train.parameters, train.inputs)
     return turn(motion, angle, load, train)
 
 

@@ -98,6 +98,18 @@ def test_off_ends_in_park_with_blades_at_low_and_high_supply_on_dry_and_wet_glas
         park(car.copy())
 
 
+@pytest.mark.parametrize("before", ["slow", "fast"])
+def test_off_at_any_of_360_angles_ends_in_park_with_blades_on_dry_glass(loaded, before):
+    car = ClosedLoop(loaded)
+    drive_until(car, 1.0, STALKS[before])
+    for degree in range(360):
+        drive_until(car, 1.0 + degree / 360.0, STALKS[before])
+        trial = car.copy()
+        park(trial)
+        assert trial.turns < car.turns + 2.1
+        assert abs(math.remainder(trial["crank_angle_rad"], 2.0 * math.pi)) < math.radians(7.5)
+
+
 def test_speeds_change_at_park_and_only_there(car):
     drive_until(car, 0.3, SLOW)
     changes = []

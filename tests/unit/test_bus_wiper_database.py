@@ -8,7 +8,7 @@ from cantools.database.can import Database
 from cantools.database.can.message import Message
 from cantools.database.can.signal import Signal
 
-from hilplant.signals import ECU_FAULTS, ECU_STATES, MODES, SCREENS, STALK_POSITIONS, STATUS
+from hilplant.signals import ECU_FAULTS, ECU_STATES, IN_CHARGE, MODES, SCREENS, STALK_POSITIONS, STATUS
 
 ROOT = Path(__file__).parents[2]
 WIPER = Database(strict=True)
@@ -59,13 +59,15 @@ def test_value_tables_hold_the_plants_own_names() -> None:
     assert tables["Master_Input"] == dict(enumerate(STALK_POSITIONS))
     assert tables["EcuState"] == dict(enumerate(ECU_STATES))
     assert tables["EcuFault"] == dict(enumerate(ECU_FAULTS))
-    from_plant = {"Mode", "Screen", "RelayOn", "RelayFast", "ParkContact", "Guard"}
+    assert tables["LoadMode"] == tables["MotorMode"] == dict(enumerate(IN_CHARGE))
+    from_plant = {"Mode", "Screen", "RelayOn", "RelayFast", "ParkContact", "Guard", "LoadMode", "MotorMode"}
     assert set(tables) == from_plant | {"Master_Input", "Flick_Wipe", "Wash", "EcuState", "EcuFault"}
 
 
 def test_every_count_of_the_status_has_a_signal() -> None:
     from_plant = [m for m in WIPER.messages if m.senders == ["PLANT"] and m.frame_id >= 0x210]
-    counts = [signal for message in from_plant for signal in message.signals if signal.name != "Guard"]
+    outputs = {"Guard", "LoadMode", "MotorMode"}
+    counts = [signal for message in from_plant for signal in message.signals if signal.name not in outputs]
     assert len(counts) == len(STATUS)
 
 

@@ -187,3 +187,24 @@ def test_a_silent_park_switch_releases_the_relays_at_once_and_the_wiper_is_parke
     assert bench.play(20.0, SLOW, None) == RELAYS_OFF
     assert bench.play(0.5, OFF, False) == DRIVE
     assert bench.play(0.0, OFF, True) == RELAYS_OFF
+
+
+@pytest.mark.parametrize("contact", [True, False], ids=["in park", "on the screen"])
+@pytest.mark.parametrize("held_up", ["silence", "supply"])
+def test_a_blocked_wiper_that_is_held_up_again_and_again_is_not_driven_for_ever(bench, contact, held_up):
+    """Neither silence of the park switch nor dips of the supply begin the time of a turn anew."""
+    driven = 0
+    while bench.state.phase is not Phase.LOCKOUT:
+        for _ in range(200):
+            driven += bench.play(0.0, SLOW, contact, supply_v=13.5).on
+        bench.play(0.0, SLOW, *((None, 3.0, 13.5) if held_up == "silence" else (contact, 3.0, 5.0)))
+        assert bench.now_s < 600.0, f"driven for {driven * POLL_S:.0f} s, {bench.state}"
+    assert driven * POLL_S < SETTINGS.tries * SETTINGS.turn_timeout_s + 1.0
+
+
+def test_a_wiper_that_silence_held_up_still_has_the_time_of_a_turn_when_it_is_taken_up_again(bench):
+    bench.play(1.0, SLOW, True)
+    bench.play(1.0, SLOW, False)
+    bench.play(2.0 * SETTINGS.turn_timeout_s, SLOW, None)
+    assert bench.play(5.0, SLOW, False) == DRIVE, "the silence itself does not count"
+    assert bench.state.tries == 0

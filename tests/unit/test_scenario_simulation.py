@@ -135,6 +135,6 @@ def test_a_bench_with_mistakes_is_not_simulated(tmp_path: Path) -> None:
 
 def test_a_result_goes_straight_to_a_file_or_says_why_not(tmp_path: Path) -> None:
     said = simulate_to_file("default", "stall", tmp_path / "out.csv")
-    assert said.endswith("out.csv: 8000 rows, 33 columns")
+    assert said.endswith("out.csv: 8000 rows, 35 columns")
     with pytest.raises(tables.TableError, match=r"no/out\.csv cannot be written: no such file or directory"):
         simulate_to_file("default", "stall", tmp_path / "no" / "out.csv")

@@ -20,6 +20,11 @@ DATABASE = cantools.database.load_file(ROOT / "dbc" / "wiper.dbc")
 LINE = re.compile(r"\((\d+\.\d+)\) \S+ ([0-9A-F]{3})#([0-9A-F]*)$")
 HILPLANT = (sys.executable, "-m", "hilplant")
 PATIENCE_S = 40.0
+#: Where the cache of compiled code is cold, a guest compiles for minutes before it serves.
+START_PATIENCE_S = 300.0
+#: Of each pause so many periods are measured at most.
+MOST_PERIODS = 6
+STARTS = ("RelayCommand", "RelayOn", "On")
 PAUSES_S = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
 #: As few frames as the test needs: a guest of User Mode Linux has one slow processor for everything in it.
 BENCH = f"""
@@ -87,9 +92,9 @@ def test_a_stalk_by_cansend_through_all_stages(
 ) -> None:
     seen, bench = Watcher(ecu_frames), tmp_path / "bench.yaml"
     bench.write_text(BENCH)
-    spawn(*HILPLANT, "run", bench).wait_for("serves on", 60.0)
+    spawn(*HILPLANT, "run", bench).wait_for("serves on", START_PATIENCE_S)
     ecu = spawn(*HILPLANT, "ecu", bench)
-    ecu.wait_for("relays OFF\n", 60.0)
+    ecu.wait_for("relays OFF\n", START_PATIENCE_S)
 
     def stalk(position: str, interval: int = 1, flick: int = 0) -> Callable[[], None]:
         return lambda: cansend(stalk_frame(position, interval, flick))
@@ -99,7 +104,7 @@ def test_a_stalk_by_cansend_through_all_stages(
     assert seen.times("RelayCommand", "RelayFast", "Fast")
     assert_parked(seen)
     for interval, pause_s in enumerate(PAUSES_S, start=1):
-        seen.wait_after(stalk("Intermittent", interval), ("RelayCommand", "RelayOn", "On"), count=3)
+        seen.wait_after(stalk("Intermittent", interval), STARTS, count=3)
         check_periods(seen, pause_s)
     for position in ("Slow", "Fast"):
         seen.wait_after(stalk(position), ("EcuStatus", "EcuState", position))
@@ -113,15 +118,23 @@ def test_a_stalk_by_cansend_through_all_stages(
 def check_periods(seen: Watcher, pause_s: float) -> None:
     """From a start to the next it takes the wipe, until the park switch closes, and the pause: within 10 ms.
 
-    The better of two, because the host may hold the guest up for once.
+    The host may hold the guest up now and then, so the best of some periods is judged: two, and more if it must be. A
+    pause that is wrong is wrong each time.
     """
-    arrivals = seen.times("ParkSwitch", "ParkContact", "Closed")
-    excesses = []
-    for start_s, next_s in pairwise(seen.times("RelayCommand", "RelayOn", "On")[-3:]):
-        (wipe_s,) = [at_s - start_s for at_s in arrivals if start_s < at_s < next_s]
-        excesses.append(next_s - start_s - wipe_s - pause_s)
-        print(f"pause {pause_s} s: wipe {wipe_s:.4f} s, excess of the period {excesses[-1] * 1e3:.1f} ms")
+    excesses = [excess_s(seen, pause_s, last) for last in (-2, -1)]
+    while min(map(abs, excesses)) > 0.010 and len(excesses) < MOST_PERIODS:
+        seen.wait_after(lambda: None, STARTS)
+        excesses.append(excess_s(seen, pause_s, -1))
+    print(f"pause {pause_s} s: excess of the period", ", ".join(f"{excess * 1e3:.1f}" for excess in excesses), "ms")
     assert min(map(abs, excesses)) <= 0.010
+
+
+def excess_s(seen: Watcher, pause_s: float, last: int) -> float:
+    """By how much the period that ends with a start, counted from the last, is longer than wipe and pause."""
+    starts = seen.times(*STARTS)
+    start_s, next_s = starts[last - 1], starts[last]
+    (arrival_s,) = [at_s for at_s in seen.times("ParkSwitch", "ParkContact", "Closed") if start_s < at_s < next_s]
+    return next_s - arrival_s - pause_s
 
 
 def assert_parked(seen: Watcher) -> None:

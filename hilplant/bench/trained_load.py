@@ -1,0 +1,92 @@
+"""The trained file of a bench's load -> the numbers that the step reads; refused when made for something else."""
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hilplant.bench.load_files import POLYNOMIAL_FORMAT, TORQUE_FORMAT, PolynomialFile, TorqueFile, TrainedFile
+from hilplant.bench.parameter_hash import linkage_hash, load_hash
+from hilplant.bench.place import Place
+from hilplant.bench.plant_description import AnyLoad, BladeEntry, NetworkLoad, PolynomialLoad
+from hilplant.bench.screen_parts import ScreenFile
+from hilplant.bench.sealed import sealed_file
+from hilplant.bench.wiper import Mechanics
+from hilplant.models.records import NO_NETWORKS, Parameters
+from hilplant.surrogates.samples import network_torques, physical_torques
+from hilplant.surrogates.torque_network import HIGHEST, LOWEST
+from hilplant.units import TURN_RAD
+
+Trained = TypeVar("Trained", bound=TrainedFile)
+
+#: Angles and speeds at which a network is looked at before it is trusted.
+_ANGLES, _SPEEDS = 97, 5
+
+
+@dataclass(frozen=True, slots=True)
+class Around:
+    """What a trained file must have been made for."""
+
+    mechanics: Mechanics
+    screen: ScreenFile | None
+    blades: tuple[BladeEntry, BladeEntry] | None
+
+
+@dataclass(frozen=True, slots=True)
+class TrainedLoad:
+    """The numbers of the networks' row that belong to the load, and the file they come from, if there is one."""
+
+    numbers: NDArray[np.float64]
+    file: TorqueFile | PolynomialFile | None = None
+
+
+def read_trained_load(place: Place, load: AnyLoad, around: Around) -> TrainedLoad | None:
+    """Read the file of a load that has one; None when it must not be used, which is noted."""
+    if isinstance(load, NetworkLoad) and around.screen is not None and around.blades is not None:
+        wanted = load_hash(around.mechanics.written, around.screen, around.blades, load.points)
+        network = _taken(place.inner("file"), TORQUE_FORMAT, TorqueFile, wanted)
+        return TrainedLoad(network.numbers(), network) if network is not None else None
+    if isinstance(load, PolynomialLoad) and load.file is not None:
+        wanted = linkage_hash(around.mechanics.written)
+        polynomial = _taken(place.inner("file"), POLYNOMIAL_FORMAT, PolynomialFile, wanted)
+        return TrainedLoad(polynomial.numbers(), polynomial) if polynomial is not None else None
+    return TrainedLoad(NO_NETWORKS)
+
+
+def keeps_its_bounds(place: Place, trained: TrainedLoad, parameters: Parameters, tables: NDArray[np.float64]) -> bool:
+    """Say whether a network is as near to this plant's physical load as its file says; note it when it is not."""
+    if not isinstance(trained.file, TorqueFile):
+        return True
+    bounds = trained.file.bounds
+    for wetness, bound in ((0.0, bounds.dry_n_m), (1.0, bounds.wet_n_m)):
+        error = worst_on_grid(parameters, tables, wetness)
+        if not error <= bound:
+            text = f"the network is up to {error:.3g} N m away from the physical load, and its file promises {bound:g}"
+            place.note("file", text=f"{text}; train it again")
+            return False
+    return True
+
+
+def worst_on_grid(parameters: Parameters, tables: NDArray[np.float64], wetness: float) -> float:
+    """Return the largest error of the network over a coarse grid of angles and speeds [N m]."""
+    numbers = parameters.networks
+    angles = np.linspace(0.0, TURN_RAD, _ANGLES, endpoint=False)
+    speeds = np.linspace(numbers[LOWEST], numbers[HIGHEST], _SPEEDS)
+    states = np.array([(angle, speed) for speed in speeds for angle in angles])
+    physical, network = np.empty((2, len(states)))
+    physical_torques(tables, parameters.load, wetness, states, physical)
+    network_torques(numbers, wetness == 1.0, states, network)
+    return float(np.abs(network - physical).max())
+
+
+def _taken(place: Place, wanted: str, kind: type[Trained], parameter_hash: str) -> Trained | None:
+    file = sealed_file(place, wanted)
+    trained = file.take(kind) if file is not None else None
+    if trained is None:
+        return None
+    if trained.parameter_hash != parameter_hash:
+        ours, theirs = parameter_hash[:16], trained.parameter_hash[:16]
+        place.note(text=f"'{place.data()}' was trained for other parameters: its hash is {theirs}, this bench's {ours}")
+        return None
+    return trained

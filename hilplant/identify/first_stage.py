@@ -1,0 +1,146 @@
+"""Stage 1: a measurement -> the transfer function of each mode -> motor parameters, with their standard errors (5.3).
+
+(5.7) takes the load as proportional to the speed, but a wiper's load changes with the crank angle. Over a whole
+recording that bends every coefficient, and often leaves none that a motor could have. So only the first `WINDOW_S`
+after each step of the voltage are used: the crank hardly turns meanwhile, and any state at their start is allowed for.
+
+Two ways lead from coefficients to parameters. `by_load` is the thesis': it assumes the load's drag, (5.15), and K and J
+hang on that. `by_park` needs no assumption: the park switch gives the mean speed, so K follows from (5.18) over whole
+turns, then J from the coefficients. Standard errors stand for the noise, not for what is left of the load.
+"""
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from uncertainties import correlated_values
+
+from hilplant.failure import Failure
+from hilplant.identify.alignment import voltage_steps
+from hilplant.identify.bench_measurements import Friction, back_emf_constant, mean_of, no_load_friction
+from hilplant.identify.bench_measurements import SteadyRun as _Turn
+from hilplant.identify.checks import running
+from hilplant.identify.measurement import Mask, Measurement, Samples
+from hilplant.identify.park import rising_edges
+from hilplant.identify.srivc import Fit, Stretch, fit
+from hilplant.identify.transfer_function import (
+    Coefficients,
+    Equivalent,
+    TransferFunction,
+    by_constant,
+    by_load,
+    coefficients,
+    load_constant,
+)  # fmt: skip
+
+#: How much of the data is used around each step: long for the electrical time constant, short for the load [s].
+BEFORE_S, WINDOW_S = 0.01, 0.04
+
+
+class ModeResult(NamedTuple):
+    """What stage 1 found for one mode; every number carries its standard error.
+
+    `by_park` is None where no whole turn lies in this mode. `load` is the mean torque at the shaft over the speed of
+    those turns, motor and wiper together, as damping and dry torque; None without two different speeds.
+    """
+
+    mode: str
+    fit: Fit
+    coefficients: Coefficients
+    by_load: Equivalent
+    by_park: Equivalent | None
+    load: Friction | None
+    steps: int
+    turns: int
+
+
+def first_stage(data: Measurement, gear_ratio: float, drag_n_m_s: float | None = None) -> dict[str, ModeResult]:
+    """Return what the data say of each mode that they contain.
+
+    `drag_n_m_s` is the assumed b + gamma; left out, it is that of (5.15).
+
+    Raises
+    ------
+    Failure
+        When the mode is not known, or nothing settles for a mode that the data contain.
+
+    """
+    if np.all(np.isnan(data.fast)):
+        raise Failure(
+            f"{data.source}: nothing says whether the motor runs slow or fast; name a column (--columns fast=NAME) or "
+            "say --mode slow"
+        )
+    results = {}
+    drag = drag_n_m_s or load_constant(gear_ratio=gear_ratio)
+    steps = voltage_steps(data.voltage_v, data.period_s)
+    for mode, value in (("slow", 0.0), ("fast", 1.0)):
+        mask = running(data) & (data.fast == value)
+        if windows := _windows(data, mask, steps):
+            results[mode] = _mode(data, mode, windows, _turns(data, mask, gear_ratio), drag)
+    if not results:
+        text = "no step of the voltage with the motor on; record switching on at several voltages"
+        raise Failure(f"{data.source}: {text}")
+    return results
+
+
+def _windows(data: Measurement, mask: Mask, steps: list[int]) -> list[slice]:
+    """Return the samples about each step after which the motor stays on in this mode."""
+    before, after = round(BEFORE_S / data.period_s), round(WINDOW_S / data.period_s)
+    windows = []
+    for step in steps:
+        if not np.all(mask[step : step + after]):
+            continue
+        same = data.fast[step - before : step] == data.fast[step]
+        windows.append(slice(step - before if np.all(same) else step, step + after))
+    return windows
+
+
+def _mode(data: Measurement, mode: str, windows: list[slice], turns: list[_Turn], drag_n_m_s: float) -> ModeResult:
+    current = _bridged(data.current_a, data.valid)
+    stretches = [Stretch(data.voltage_v[part], current[part], data.valid[part]) for part in windows]
+    try:
+        found = fit(stretches, data.period_s, friction=True)
+    except Failure as error:
+        raise Failure(f"{data.source}, {mode} mode: {error}") from error
+    named = coefficients(TransferFunction(*correlated_values([*found.function, found.friction], found.covariance)[:4]))
+    _refuse_impossible(data, mode, named)
+    assumed = by_load(named, drag_n_m_s)
+    if not turns:
+        return ModeResult(mode, found, named, assumed, None, None, len(windows), 0)
+    constants = [back_emf_constant(turn, assumed.resistance_ohm) for turn in turns]
+    motor = by_constant(named, mean_of(constants))
+    return ModeResult(mode, found, named, assumed, motor, _load(turns, motor), len(windows), len(turns))
+
+
+def _load(turns: list[_Turn], motor: Equivalent) -> Friction | None:
+    speeds = [turn.speed_rad_s for turn in turns]
+    if max(speeds) - min(speeds) < 0.05 * max(speeds):
+        return None
+    return no_load_friction(turns, [motor.constant_v_s] * len(turns))
+
+
+def _refuse_impossible(data: Measurement, mode: str, named: Coefficients) -> None:
+    """Refuse coefficients that no motor has."""
+    for name, value in named._asdict().items():
+        if not value.n > 0.0:
+            raise Failure(
+                f"{data.source}, {mode} mode: the data give {name} = {value.n:.3g}, which no motor has: the load hides "
+                "it; record more switching on and steps of the voltage, or filter less"
+            )
+
+
+def _bridged(values: Samples, valid: Mask) -> Samples:
+    """Put a straight line where samples do not count, so that a filter is not upset by what it must not see."""
+    places = np.arange(len(values))
+    return np.where(valid, values, np.interp(places, places[valid], values[valid]))
+
+
+def _turns(data: Measurement, mask: Mask, gear_ratio: float) -> list[_Turn]:
+    """Return the means over each whole turn between park edges in this mode; L di/dt is nearly 0 there."""
+    turns = []
+    for begin, end in pairwise(rising_edges(data.park)):
+        if np.all(mask[begin:end]) and np.all(data.valid[begin:end]):
+            speed = 2.0 * np.pi * gear_ratio / ((end - begin) * data.period_s)
+            volts, amperes = (float(np.mean(values[begin:end])) for values in (data.voltage_v, data.current_a))
+            turns.append(_Turn(volts, amperes, speed))
+    return turns

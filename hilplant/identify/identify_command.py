@@ -1,0 +1,194 @@
+"""What `hilplant identify` does: files in, three stages with their progress, files and report out."""
+
+import hashlib
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import typer
+
+from hilplant.bench import Bench, load_bench
+from hilplant.failure import Failure
+from hilplant.identify.executor import Executor, here, on_cluster
+from hilplant.identify.experiment import Run, make_run
+from hilplant.identify.genetic import Settings
+from hilplant.identify.journal import Journal
+from hilplant.identify.measurement import Samples
+from hilplant.identify.named_data import Named, read_named
+from hilplant.identify.optimisers import budget, optimiser
+from hilplant.identify.parameters import BY_NAME, Choice, chosen
+from hilplant.identify.progress_display import ProgressDisplay
+from hilplant.identify.result_files import Origin, write_bench
+from hilplant.identify.starting_point import Known, starting_point
+from hilplant.identify.three_stages import Identified, Task, identify
+
+#: Beyond this many times its noise the current is said not to be explained.
+MANY_NOISES = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What the command line asks for."""
+
+    data: tuple[str, ...]
+    bench: str
+    out: Path
+    report: Path | None = None
+    held_out: tuple[str, ...] = ()
+    hold: tuple[str, ...] = ()
+    also: tuple[str, ...] = ()
+    columns: str = ""
+    frames: str | None = None
+    search: str = "genetic"
+    generations: int = 200
+    population: int = 40
+    ordered: bool = True
+    seed: int = 0
+    resume: bool = False
+    dask: str | None = None
+    date: str = ""
+
+
+def identify_files(request: Request) -> dict[str, Any]:
+    """Identify, write everything, print what was found; return the figures."""
+    bench = load_bench(request.bench)
+    optimiser(request.search)
+    settings = _settings(request)
+    base, held = _held(bench, request.hold)
+    choice = chosen(base, request.also, held)
+    reading = request.columns, request.frames
+    fitted, held_out = (read_named(names, *reading) for names in (request.data, request.held_out))
+    _refuse_missing_load(bench, request.bench)
+    known = starting_point([named.data for named in fitted], choice, bench.parameters.motor.gear_ratio)
+    journal = Journal(_journal_path(request.out), _identity(request, bench, [*fitted, *held_out]), request.resume)
+    with ExitStack() as open_things:
+        executor: Executor = here
+        if request.dask is not None:
+            executor = open_things.enter_context(on_cluster(request.dask))
+        display = open_things.enter_context(ProgressDisplay(budget(settings)))
+        task = Task(
+            bench, _runs(fitted, bench), choice, known.values, _runs(held_out, bench), settings, request.seed,
+            request.search, request.ordered, executor, journal.answering, display,
+        )  # fmt: skip
+        found = identify(task)
+    fitted_files, held_files = (tuple((each.text, each.data) for each in named) for named in (fitted, held_out))
+    origin = Origin(fitted_files, held_files, request.date, request.seed, request.search)
+    written = write_bench(request.out, found, origin)
+    notes = [note for named in fitted for note in named.notes] + list(known.notes)
+    if request.report is not None:
+        from hilplant.identify.report import write_report
+
+        write_report(request.report, found, known, origin, notes)
+        written.append(request.report)
+    journal.remove()
+    _print(found, known, written)
+    return figures(found)
+
+
+def _settings(request: Request) -> Settings:
+    if request.population < 8 or request.generations < 1:
+        raise Failure("the search needs a population of 8 at least, and one generation")
+    return Settings(population=request.population, generations=request.generations)
+
+
+def _held(bench: Bench, texts: tuple[str, ...]) -> tuple[Samples, list[str]]:
+    """Return the bench's row with held parameters at the values given (NAME=VALUE, or NAME for the bench's)."""
+    row, names = bench.parameter_row.copy(), []
+    for text in texts:
+        name, _, value = text.partition("=")
+        if name not in BY_NAME:
+            raise Failure(f"--hold {text}: there is no parameter '{name}'; known: {', '.join(BY_NAME)}")
+        if value:
+            try:
+                number = float(value)
+            except ValueError:
+                raise Failure(f"--hold {text}: '{value}' is no number") from None
+            row = Choice([BY_NAME[name]], row).rows(np.array([[number]]))[0]
+        names.append(name)
+    return row, names
+
+
+def _refuse_missing_load(bench: Bench, name: str) -> None:
+    from hilplant.models.load import REDUCED
+
+    if bench.parameters.load.model != REDUCED:
+        raise Failure(f"{name}: identification finds the friction of blades; plant: load: must be {{model: reduced}}")
+
+
+def _runs(named: list[Named], bench: Bench) -> list[Run]:
+    return [make_run(each.data, bench, each.screen) for each in named]
+
+
+def _journal_path(out: Path) -> Path:
+    return out.with_name(f"{out.name}.journal")
+
+
+def _identity(request: Request, bench: Bench, named: list[Named]) -> str:
+    """Return a digest of everything that decides which sets are asked for."""
+    digest = hashlib.sha256(bench.parameter_row.tobytes() + bench.tables.tobytes() + bench.input_row.tobytes())
+    for each in named[: len(request.data)]:
+        digest.update(f"{each.screen} {each.data.sha256}".encode())
+        digest.update(each.data.current_a.tobytes() + each.data.fast.tobytes())
+    choices = (request.hold, request.also, request.search, request.generations, request.population, request.ordered)
+    digest.update(repr((choices, request.seed)).encode())
+    return digest.hexdigest()
+
+
+def _print(found: Identified, known: Known, written: list[Path]) -> None:
+    for note in known.notes:
+        typer.echo(note)
+    rows = zip(found.verdicts, found.intervals, found.task.choice.values, strict=True)
+    typer.echo(f"{'parameter':24}{'before':>12}{'found':>12}   95 % interval")
+    for verdict, interval, before in rows:
+        text = "not told by these data"
+        if verdict.told:
+            text = " to ".join("open" if side is None else f"{side:.5g}" for side in interval)
+        elif verdict.together:
+            text += f", not apart from {', '.join(verdict.together)}"
+        typer.echo(f"{verdict.name:24}{before:12.5g}{verdict.value:12.5g}   {text}")
+    for force in found.forces:
+        error = f"{force.force_n:.4g} N, standard error {force.standard_error_n:.2g} N"
+        typer.echo(f"friction of a blade, {force.screen}, {force.speed_mm_s:g} mm/s: {error}")
+    for role, compared in (("fitted", found.fitted), ("held out", found.held_out)):
+        for each in (comparison.error for comparison in compared):
+            typer.echo(f"{each.name} ({role}): current {each.rms_current_a:.4g} A rms, noise {each.noise_a:.4g} A")
+    for comparison in found.fitted:
+        left = comparison.error
+        if left.rms_current_a > MANY_NOISES * left.noise_a:
+            text = "the model does not explain it, so intervals are too narrow; try another --seed, or look at the data"
+            ratio = left.rms_current_a / left.noise_a
+            typer.echo(f"{left.name}: the current's error is {ratio:.1f} times the noise: {text}", err=True)
+    times = found.times
+    for hint in found.advice:
+        typer.echo(f"would tell {', '.join(hint.tells)}: {hint.text}")
+    typer.echo(
+        f"search: {times.global_evaluations} evaluations in {times.global_s:.1f} s, {times.evaluations_per_s:.0f}/s; "
+        f"refinement {times.local_s:.1f} s, intervals {times.intervals_s:.1f} s"
+    )
+    typer.echo(f"written: {', '.join(map(str, written))}")
+
+
+def figures(found: Identified) -> dict[str, Any]:
+    """Return the numbers for a JSON file."""
+    times = found.times
+    flat: dict[str, Any] = {
+        "search_cost": found.outcome.cost,
+        "cost": found.final_cost,
+        "rms_current_a": found.solution.noise.current_a,
+        "rms_park_edge_s": found.solution.noise.edge_s,
+        "search_s": times.global_s,
+        "search_evaluations": times.global_evaluations,
+        "evaluations_per_s": times.evaluations_per_s,
+        "refinement_s": times.local_s,
+        "intervals_s": times.intervals_s,
+        "not_told": [verdict.name for verdict in found.verdicts if not verdict.told],
+    }
+    for verdict, interval in zip(found.verdicts, found.intervals, strict=True):
+        flat[verdict.name] = verdict.value
+        if verdict.told:
+            flat[f"{verdict.name}_low"], flat[f"{verdict.name}_high"] = interval
+    for place, comparison in enumerate(found.held_out, 1):
+        flat[f"held_out_{place}_rms_current_a"] = comparison.error.rms_current_a
+    return flat

@@ -1,0 +1,113 @@
+"""Profile intervals: how far a parameter can go, all others following, before the data speak against it.
+
+All parameters and both sides are walked together, so that each step is one batch of simulations. The others follow by
+Gauss-Newton steps with the derivatives of the best point, except along directions that the data do not tell anyway.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hilplant.identify.local_search import Solution
+from hilplant.identify.measurement import Samples
+from hilplant.identify.uncertainty import NORMAL_95, RISE_95, Spread, Verdict
+
+Matrix = NDArray[np.float64]
+
+#: Gauss-Newton steps of the others at each distance, and distances that are tried.
+FOLLOWING, DISTANCES = 2, 4
+#: The rise is met when it is this near to the wanted one, in parts of it.
+NEAR = 0.05
+#: A direction in which the standard error is more than this part of the search space is not followed.
+LOOSE = 0.25
+
+
+class Interval(NamedTuple):
+    """95 % interval; a side is None where the search space ends before the data speak against the value."""
+
+    low: float | None
+    high: float | None
+
+
+def profile(solution: Solution, known: Spread, said: Sequence[Verdict]) -> list[Interval]:
+    """Return the 95 % interval of each parameter; without sides where the data do not tell it.
+
+    The rise is wanted to be that of chi-square with one degree of freedom, times the widening by correlated errors.
+    """
+    told = [place for place, verdict in enumerate(said) if verdict.told]
+    intervals = [Interval(None, None)] * len(said)
+    if not told:
+        return intervals
+    walk = _Walk(solution, known, told)
+    ends = walk.ends()
+    for row, place in enumerate(told):
+        intervals[place] = Interval(_finite(ends[row]), _finite(ends[row + len(told)]))
+    return intervals
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+class _Walk:
+    """Parameters held at distances from the best point: all downwards, then all upwards, a row for each."""
+
+    def __init__(self, solution: Solution, known: Spread, places: list[int]) -> None:
+        self.solution = solution
+        self.held, self.sign = np.tile(places, 2), np.repeat([-1.0, 1.0], len(places))
+        variance = float(np.mean(solution.residuals**2))
+        self.wanted = RISE_95 * known.widening[self.held] * variance
+        errors = np.sqrt(np.diag(known.covariance))[self.held]
+        bound = np.where(self.sign < 0.0, solution.low[self.held], solution.high[self.held])
+        self.reach = np.abs(bound - solution.x[self.held])
+        self.distance = np.minimum(NORMAL_95 * errors, self.reach)
+        self.gains = {place: _gain(solution, place) for place in places}
+
+    def ends(self) -> Samples:
+        """Return where the rise is the wanted one; not finite where the bound comes first."""
+        for _ in range(DISTANCES):
+            ratio = self.rises() / self.wanted
+            met = self.distance / np.sqrt(np.maximum(ratio, 1e-3))
+            beyond = (ratio < 1.0) & (self.distance >= self.reach * (1.0 - 1e-9))
+            if np.all(beyond | (np.abs(ratio - 1.0) < NEAR)):
+                break
+            met = np.clip(met, 0.3 * self.distance, 3.0 * self.distance)
+            self.distance = np.minimum(met, self.reach)
+        scale = self.solution.problem.scale[self.held]
+        found = self.solution.x[self.held] * scale + self.sign * met * scale
+        return np.where(beyond, np.inf, found)
+
+    def rises(self) -> Samples:
+        """Return how much the sum of squares rises at the distances, the others following."""
+        solution, rows = self.solution, range(len(self.held))
+        jacobian, problem = solution.jacobian, solution.problem
+        steps = self.sign * self.distance
+        x = np.tile(solution.x, (len(self.held), 1))
+        x[rows, self.held] += steps
+        begin = solution.residuals @ jacobian  # not 0 where the ties hold the best point
+        for row, place in enumerate(self.held):
+            x[row] -= self.gains[place] @ (jacobian.T @ (jacobian[:, place] * steps[row]))
+        least = np.full(len(self.held), np.inf)
+        for count in range(FOLLOWING + 1):
+            residuals = problem.simulated(np.clip(x, solution.low, solution.high))
+            least = np.minimum(least, np.sum(residuals**2, axis=1) - np.sum(solution.residuals**2))
+            if count < FOLLOWING:
+                slopes = residuals @ jacobian - begin
+                x -= np.stack([self.gains[place] @ slopes[row] for row, place in enumerate(self.held)])
+        return least
+
+
+def _gain(solution: Solution, held: int) -> Matrix:
+    """Return what turns a slope of the other unknowns into their Gauss-Newton step."""
+    others = np.delete(np.arange(len(solution.x)), held)
+    widths = np.ones(len(solution.x))
+    count = solution.problem.parameters
+    widths[:count] = (solution.high - solution.low)[:count]
+    _, size, vectors = np.linalg.svd(np.linalg.qr(solution.jacobian[:, others] * widths[others], mode="r"))
+    followed = size > 1.0 / LOOSE
+    directions = widths[others, np.newaxis] * vectors[followed].T / size[followed]
+    gain = np.zeros((len(solution.x), len(solution.x)))
+    gain[np.ix_(others, others)] = directions @ directions.T
+    return gain

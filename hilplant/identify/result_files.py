@@ -1,0 +1,122 @@
+"""The result as files that a bench can load: a bench over the old one, its motor, and its screen."""
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import yaml
+
+from hilplant import resources
+from hilplant.bench import Bench
+from hilplant.failure import Failure
+from hilplant.identify.measurement import Measurement, Samples
+from hilplant.identify.three_stages import Identified
+from hilplant.models.records import Motor, unpack_parameters
+
+
+class Origin(NamedTuple):
+    """What the files say of where they come from."""
+
+    fitted: tuple[tuple[str, Measurement], ...]  # as they were named, with @dry, @wet ...
+    held_out: tuple[tuple[str, Measurement], ...]
+    date: str
+    seed: int
+    search: str
+
+
+def write_bench(out: Path, found: Identified, origin: Origin) -> list[Path]:
+    """Write OUT.yaml, OUT.motor.yaml and OUT.screen.yaml; they are said to be identified, with intervals."""
+    bench = found.task.bench
+    record = unpack_parameters(found.row)
+    stem = out.with_suffix("")
+    motor, screen = stem.with_name(f"{stem.name}.motor.yaml"), stem.with_name(f"{stem.name}.screen.yaml")
+    facts = _facts(found, origin)
+    written = {
+        motor: _motor(stem.name, record.motor, facts),
+        screen: _screen(bench, stem.name, found.row, facts),
+        out: _bench(bench, out, (motor.name, screen.name), found.row),
+    }
+    head = f"# Identified from measurements, {origin.date}; `identified` says from which, and how sure it is.\n"
+    for path, data in written.items():
+        _write(path, head + yaml.safe_dump(_plain(data), sort_keys=False, allow_unicode=True, width=120))
+    return list(written)
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise Failure(f"{path}: cannot be written ({error.strerror})") from error
+
+
+def _facts(found: Identified, origin: Origin) -> dict[str, Any]:
+    """Return what the files carry beside their numbers."""
+    left = found.solution.noise
+    facts: dict[str, Any] = {
+        "date": origin.date,
+        "data": _files(origin.fitted),
+        "held_out": _files(origin.held_out),
+        "bench": found.task.bench.name,
+        "search": origin.search,
+        "seed": origin.seed,
+        "cost": found.final_cost,
+        "rms_current_a": left.current_a,
+        "rms_park_edge_s": left.edge_s,
+    }
+    facts["intervals_95"] = {
+        verdict.name: [interval.low, interval.high]
+        for verdict, interval in zip(found.verdicts, found.intervals, strict=True)
+        if verdict.told
+    }
+    facts["not_told"] = [verdict.name for verdict in found.verdicts if not verdict.told]
+    return facts
+
+
+def _files(measurements: tuple[tuple[str, Measurement], ...]) -> list[dict[str, str]]:
+    return [{"file": name, "sha256": data.sha256} for name, data in measurements]
+
+
+def _document(name: str, facts: dict[str, Any], what: str) -> dict[str, Any]:
+    files = ", ".join(entry["file"] for entry in facts["data"])
+    text = f"{what} identified from {files}. Values under `not_told` are what the search left them at, not findings."
+    return {"name": name, "source": text, "status": "identified", "identified": facts}
+
+
+def _motor(name: str, motor: Motor, facts: dict[str, Any]) -> dict[str, Any]:
+    numbers = {key: value for key, value in motor._asdict().items() if key not in ("slow", "fast")}
+    brushes = {key: brush._asdict() for key, brush in (("slow", motor.slow), ("fast", motor.fast))}
+    return _document(f"{name} motor", facts, "Motor") | brushes | numbers
+
+
+def _screen(bench: Bench, name: str, row: Samples, facts: dict[str, Any]) -> dict[str, Any]:
+    friction = unpack_parameters(row).load.friction._asdict()
+    groups: dict[str, dict[str, float]] = {"dry": {}, "wet": {}, "tacky": {}}
+    for key, value in friction.items():
+        if (kind := key.split("_")[0]) in groups:
+            groups[kind][f"mu_{key}"] = float(value)
+    angle = bench.plant.screen.angle_rad if bench.plant.screen is not None else 0.0
+    head = {"angle_rad": angle, "velocity_limit_mm_s": float(friction["velocity_limit_mm_s"])}
+    return _document(f"{name} screen", facts, "Friction") | head | groups
+
+
+def _bench(bench: Bench, out: Path, parts: tuple[str, str], row: Samples) -> dict[str, Any]:
+    shipped = bench.path.resolve().parent == resources.shipped("config", "benches").resolve()
+    base = bench.path.name if shipped else str(bench.path.resolve())
+    load = unpack_parameters(row).load
+    sides = {}
+    for side, blade, entry in zip(
+        ("left", "right"), (load.left_blade, load.right_blade), bench.plant.blades or (), strict=False
+    ):
+        written = entry.model_dump(exclude_unset=True) | blade._asdict()
+        sides[side] = written
+    plant: dict[str, Any] = {"motor": parts[0], "screen": parts[1]}
+    return {"name": out.stem, "extends": base, "plant": plant | ({"blades": sides} if sides else {})}
+
+
+def _plain(value: Any) -> Any:
+    """Return the same with lists for tuples and floats for numpy's, which YAML knows."""
+    if isinstance(value, dict):
+        return {key: _plain(inner) for key, inner in value.items()}
+    if isinstance(value, tuple | list):
+        return [_plain(inner) for inner in value]
+    return float(value) if isinstance(value, np.floating) else value

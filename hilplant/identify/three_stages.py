@@ -1,0 +1,137 @@
+"""The whole way: measurements and a bench in, parameters with their intervals out (5.3 to 5.6)."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from hilplant.bench import Bench
+from hilplant.identify.advice import Advice, advice
+from hilplant.identify.cost import Cost, cost_of
+from hilplant.identify.executor import Executor, evaluator, here
+from hilplant.identify.experiment import Run
+from hilplant.identify.forces import FrictionForce, friction_forces
+from hilplant.identify.genetic import Evaluate, Outcome, Progress, Settings, Space, order_of
+from hilplant.identify.local_search import Solution, search
+from hilplant.identify.measurement import Samples
+from hilplant.identify.optimisers import optimiser
+from hilplant.identify.parameters import Choice, search_space
+from hilplant.identify.profile import Interval, profile
+from hilplant.identify.residuals import Problem, expected_noise
+from hilplant.identify.uncertainty import Spread, Verdict, spread, verdicts
+from hilplant.identify.validation import Comparison, compare
+
+_TABLE_5_7 = Settings()
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """What is to be found, from what, and how.
+
+    `about` are the values about which the search space is laid; `journal` wraps the evaluation so that a killed run can
+    go on; `told` hears of stage and progress.
+    """
+
+    bench: Bench
+    runs: Sequence[Run]
+    choice: Choice
+    about: Samples
+    held_out: Sequence[Run] = ()
+    settings: Settings = _TABLE_5_7
+    seed: int = 0
+    search: str = "genetic"
+    ordered: bool = True
+    executor: Executor = here
+    journal: Callable[[Evaluate], Evaluate] = field(default=lambda evaluate: evaluate)
+    told: Callable[[str, Progress | float], None] = field(default=lambda stage, progress: None)
+
+
+class Times(NamedTuple):
+    """How long each part took [s], and how many simulations of all recordings it made."""
+
+    global_s: float
+    global_evaluations: int
+    global_computed: int  # less those that a journal answered
+    local_s: float
+    local_evaluations: int
+    intervals_s: float
+
+    @property
+    def evaluations_per_s(self) -> float:
+        """Simulations of all recordings that the search made in a second."""
+        return self.global_computed / self.global_s
+
+
+class Identified(NamedTuple):
+    """What identification found; `row` is the bench's packed row with the new parameters."""
+
+    task: Task
+    cost: Cost
+    space: Space
+    outcome: Outcome
+    solution: Solution
+    known: Spread
+    verdicts: list[Verdict]
+    intervals: list[Interval]
+    forces: list[FrictionForce]
+    advice: list[Advice]
+    row: Samples
+    fitted: list[Comparison]
+    held_out: list[Comparison]
+    times: Times
+    final_cost: float
+
+
+def identify(task: Task) -> Identified:
+    """Run stage 2 and stage 3, and tell how sure the result is."""
+    clock = [time.perf_counter()]
+    cost = cost_of(task.runs, task.choice, task.bench.tables)
+    low, high = search_space(task.choice, task.about)
+    space = Space(low, high, order_of(task.choice.names) if task.ordered else ())
+    computed = _Computed(evaluator(cost, task.executor))
+    evaluate = task.journal(computed)
+    outcome = optimiser(task.search)(evaluate, space, task.settings, task.seed, lambda seen: task.told("search", seen))
+    clock.append(time.perf_counter())
+    solution = _refined(task, outcome)
+    clock.append(time.perf_counter())
+    known = spread(solution)
+    said = verdicts(solution, known)
+    intervals = profile(solution, known, said)
+    clock.append(time.perf_counter())
+    row = task.choice.rows(solution.values[np.newaxis])[0]
+    spent = np.diff(clock)
+    times = Times(
+        float(spent[0]),
+        outcome.history[-1].evaluations,
+        computed.count,
+        float(spent[1]),
+        solution.evaluations,
+        float(spent[2]),
+    )
+    return Identified(
+        task, cost, space, outcome, solution, known, said, intervals, friction_forces(solution, known),
+        advice(task.bench, solution, said), row,
+        compare(task.runs, row, task.bench.tables), compare(task.held_out, row, task.bench.tables), times,
+        float(cost(solution.values[np.newaxis])[0]),
+    )  # fmt: skip
+
+
+class _Computed:
+    """Counts what is computed and not answered from a journal."""
+
+    def __init__(self, evaluate: Evaluate) -> None:
+        self.evaluate, self.count = evaluate, 0
+
+    def __call__(self, sets: Samples) -> Samples:
+        self.count += len(sets)
+        return self.evaluate(sets)
+
+
+def _refined(task: Task, outcome: Outcome) -> Solution:
+    """Search on from where stage 2 ended."""
+    usual = np.array([parameter.usual for parameter in task.choice.parameters])
+    scale = np.maximum(np.abs(outcome.values), 0.01 * usual)
+    problem = Problem(task.runs, task.choice, task.bench.tables, expected_noise(task.runs), scale)
+    return search(problem, outcome.values, lambda left_a: task.told("refine", left_a))

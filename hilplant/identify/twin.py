@@ -1,0 +1,134 @@
+"""Twin data: a bench's own plant plays a test, and its signals are spoilt as a rig spoils them.
+
+The true parameters are known, so whatever identification says can be held against them.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hilplant.bench import Bench
+from hilplant.identify.measurement import Measurement, Samples
+from hilplant.identify.sequence import OFF, Stage, play
+from hilplant.models.plant import tick
+from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
+from hilplant.units import SECOND_NS
+
+
+class Spoiling(NamedTuple):
+    """What spoils the signals.
+
+    Current: white noise of this standard deviation and steps of this size. Supply: a ripple that the motor sees and the
+    voltmeter too; what the voltmeter adds is noise of its own. Park: each edge comes early or late by up to
+    `park_jitter_s`. A part of the samples is missing, in gaps of `gap_s`.
+    """
+
+    current_a: float = 0.1
+    quantum_a: float = 0.01
+    ripple_v: float = 0.0
+    ripple_hz: float = 87.0
+    voltmeter_v: float = 0.0
+    park_jitter_s: float = 0.0
+    missing_part: float = 0.0
+    gap_s: float = 0.02
+
+
+CLEAN = Spoiling(0.0, 0.0)
+
+
+class Condition(NamedTuple):
+    """One recording: mode and screen throughout, each voltage from rest for one turn."""
+
+    fast: bool
+    screen: float
+    voltages_v: tuple[float, ...]
+    turns: int = 1
+
+
+def thesis_conditions(voltages_v: Sequence[float]) -> list[Condition]:
+    """Return slow and dry, fast and wet, as in 5.5.2."""
+    return [Condition(False, 0.0, tuple(voltages_v)), Condition(True, 1.0, tuple(voltages_v))]
+
+
+def stages(condition: Condition) -> list[Stage]:
+    """Return the test: each voltage is switched on at rest, and off at a park edge."""
+    off = OFF._replace(longest_s=0.3, fast=condition.fast)
+    parts = [off]
+    for volts in condition.voltages_v:
+        parts += [Stage(True, condition.fast, volts, condition.turns, 20.0), off]
+    return parts
+
+
+class Clean(NamedTuple):
+    """What the plant did: its inputs and outputs, a row for each tick."""
+
+    inputs: NDArray[np.float64]
+    outputs: NDArray[np.float64]
+
+
+def played(bench: Bench, condition: Condition, ripple: Spoiling = CLEAN) -> Clean:
+    """Play a condition with a bench's plant."""
+    state, inputs, outputs = bench.state_row.copy(), bench.input_row.copy(), np.zeros(len(OUTPUTS))
+    rows: list[Samples] = []
+    made: list[Samples] = []
+    inputs[INPUT_INDEX["screen"]] = condition.screen
+    step_s = bench.step_ns / SECOND_NS
+
+    def contact_after(stage: Stage) -> bool:
+        swing = ripple.ripple_v * np.sin(2.0 * np.pi * ripple.ripple_hz * len(rows) * step_s)
+        inputs[INPUT_INDEX["relay_on"]], inputs[INPUT_INDEX["relay_fast"]] = stage.on, stage.fast
+        inputs[INPUT_INDEX["supply_v"]] = max(0.0, stage.voltage_v + swing)
+        tick(state, inputs, bench.parameter_row, bench.tables, outputs)
+        rows.append(inputs.copy())
+        made.append(outputs.copy())
+        return bool(outputs[OUTPUT_INDEX["park_contact"]] > 0.5)
+
+    play(stages(condition), step_s, contact_after)
+    return Clean(np.array(rows), np.array(made))
+
+
+def spoilt(clean: Clean, how: Spoiling, step_s: float, seed: int) -> Measurement:
+    """Return what a rig would have recorded."""
+    random = np.random.default_rng(seed)
+    outputs = {name: clean.outputs[:, place] for name, place in OUTPUT_INDEX.items()}
+    count = len(clean.outputs)
+    current = outputs["current_a"] + how.current_a * random.standard_normal(count)
+    if how.quantum_a > 0.0:
+        current = how.quantum_a * np.round(current / how.quantum_a)
+    voltage = outputs["terminal_v"] + how.voltmeter_v * random.standard_normal(count)
+    park = _jittered(outputs["park_contact"], how.park_jitter_s / step_s, random)
+    valid = np.ones(count, dtype=np.bool_)
+    length = max(1, round(how.gap_s / step_s))
+    for _ in range(round(how.missing_part * count / length)):
+        begin = int(random.integers(0, count - length))
+        valid[begin : begin + length] = False
+    fast = clean.inputs[:, INPUT_INDEX["relay_fast"]].copy()
+    for values in (voltage, current):
+        values[~valid] = np.interp(np.flatnonzero(~valid), np.flatnonzero(valid), values[valid])
+    time_s = np.asarray(np.arange(count) * step_s, np.float64)
+    return Measurement(time_s, voltage, current, park, fast, valid, step_s, source="twin")
+
+
+def _jittered(contact: Samples, most: float, random: np.random.Generator) -> Samples:
+    """Move each edge by up to `most` samples either way."""
+    if most <= 0.0:
+        return contact.copy()
+    edges = np.flatnonzero(np.diff(contact)) + 1
+    moved = np.clip(edges + np.round(random.uniform(-most, most, len(edges))).astype(int), 1, len(contact) - 1)
+    made = np.full(len(contact), contact[0])
+    for place, edge in enumerate(moved):
+        made[edge:] = contact[edges[place]]
+    return made
+
+
+def write_csv(path: Path, data: Measurement) -> None:
+    """Write the measurement as a rig's logger would; samples that are missing are not there."""
+    columns = {
+        "time_s": data.time_s, "voltage_v": data.voltage_v, "current_a": data.current_a,
+        "park_contact": data.park, "relay_fast": data.fast,
+    }  # fmt: skip
+    table = np.column_stack(list(columns.values()))[data.valid]
+    np.savetxt(path, table, fmt="%.9g", delimiter=",", header=",".join(columns), comments="")

@@ -1,0 +1,201 @@
+"""Which model to choose: all loads and motors through the same minute, and through ten minutes on the bus."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import matplotlib
+import numpy as np
+
+from hilplant.bench import Bench, load_bench
+from hilplant.benchmarks.c_step import Rows, compile_networks
+from hilplant.benchmarks.networks_cost import calm_minute
+from hilplant.benchmarks.samples import alternate
+from hilplant.benchmarks.step_cost import timed_s
+from hilplant.models.load import LOADS
+from hilplant.models.plant import simulate_rows
+from hilplant.models.records import pack
+from hilplant.signals import OUTPUT_INDEX, OUTPUTS
+from hilplant.studies.bus_run import BusRun, drive
+from hilplant.surrogates.narx import NETWORK
+from hilplant.units import SECOND_NS
+
+matplotlib.use("Agg")
+from matplotlib import pyplot as plt
+
+#: The reduced plant at steps this much shorter is the truth of the minute.
+FINER = 20
+#: A surrogate's current may be off by this part of its range, its stops by this angle.
+CURRENT_GOAL, ANGLE_GOAL_DEG = 0.03, 1.0
+_ROUNDS = 20
+#: Places of labels, in points from the mark, that would lie on each other otherwise.
+_LABELS = {"none": (-14, -18), "own polynomial": (8, -14), "torque network": (-70, 10), "all networks": (-20, -18)}
+_CURRENT = OUTPUT_INDEX["current_a"]
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """One model: cost (best round) and accuracy over a minute, and what differs from the physical plant on the bus."""
+
+    name: str
+    step_ns: float
+    c_step_ns: float
+    current_rms_a: float
+    current_range_a: float
+    stops: int
+    stops_of_physical: int
+    worst_angle_deg: float  # not-a-number where the counts differ
+    bus_current_share: float  # RMS error of the current as part of its range
+    same_frames: bool
+    load_in_charge: float
+    motor_in_charge: float
+
+    @property
+    def kept(self) -> bool:
+        """Whether the ECU sees no difference: frames, stops, angles and current within the goals."""
+        stops = self.stops == self.stops_of_physical and self.worst_angle_deg < ANGLE_GOAL_DEG
+        return self.same_frames and stops and self.bus_current_share < CURRENT_GOAL
+
+
+def models() -> dict[str, Bench]:
+    """Return the benches by name; the motor network is that of the bench with all networks."""
+    default, all_networks = load_bench("default"), load_bench("networks")
+    alone = all_networks.parameters.networks
+    motor = np.concatenate([[0.0], alone[1 + int(alone[0]) :]])
+    return {
+        "reduced": default,
+        "none": _with(default, load=default.parameters.load._replace(model=float(LOADS.index("none")))),
+        "polynomial": load_bench("polynomial"),
+        "own polynomial": _with_own_polynomial(),
+        "torque network": load_bench("network"),
+        "motor network": _with(default, motor_model=1.0, networks=motor),
+        "all networks": all_networks,
+    }
+
+
+def _with_own_polynomial() -> Bench:
+    """Return the default bench with the no-load torque of its own linkage."""
+    load = "{model: polynomial, file: surrogates/polynomial_rhd_slave_driven.yaml}"
+    with TemporaryDirectory(prefix="hilplant-bench-") as folder:
+        path = Path(folder) / "bench.yaml"
+        path.write_text(f"extends: default.yaml\nname: own polynomial\nplant:\n  load: {load}\n", encoding="utf-8")
+        return load_bench(path)
+
+
+def _with(bench: Bench, **changed: Any) -> Bench:
+    parameters = bench.parameters._replace(**changed)
+    return replace(bench, parameters=parameters, parameter_row=pack(parameters))
+
+
+def compare(seconds: float) -> list[Compared]:
+    """Compare all models; `seconds` is how long each drives the bus."""
+    benches = models()
+    truth = finer_current(benches["reduced"])
+    physical = drive(benches["reduced"], seconds, look_ms=1.0)
+    with TemporaryDirectory(prefix="hilplant-c-") as folder:
+        in_c = compile_networks(Path(folder))
+        return [
+            _compared(name, bench, in_c, truth, physical if name == "reduced" else drive(bench, seconds, 1.0), physical)
+            for name, bench in benches.items()
+        ]
+
+
+def _compared(  # noqa: PLR0913, PLR0917
+    name: str, bench: Bench, in_c: Any, truth: Rows, ours: BusRun, physical: BusRun
+) -> Compared:
+    inputs = calm_minute(bench)
+    outputs = np.empty((len(inputs), len(OUTPUTS)))
+
+    def timed(way: Any) -> float:
+        return timed_s(way, bench, inputs, outputs) / len(inputs) * SECOND_NS
+
+    theirs, mine = alternate(_ROUNDS, lambda: timed(in_c), lambda: timed(simulate_rows))
+    stops, wanted = ours.stops(), physical.stops()
+    angle = float(np.degrees(np.abs(stops - wanted)).max()) if len(stops) == len(wanted) else float("nan")
+    error = np.sqrt(np.mean((ours["current_a"] - physical["current_a"]) ** 2)) / np.ptp(physical["current_a"])
+    return Compared(
+        name=name,
+        step_ns=min(mine),
+        c_step_ns=min(theirs),
+        current_rms_a=float(np.sqrt(np.mean((outputs[:, _CURRENT] - truth) ** 2))),
+        current_range_a=float(np.ptp(truth)),
+        stops=len(stops),
+        stops_of_physical=len(wanted),
+        worst_angle_deg=angle,
+        bus_current_share=float(error),
+        same_frames=set(ours.frames) == set(physical.frames),
+        load_in_charge=float((ours["load_mode"] == NETWORK).mean()),
+        motor_in_charge=float((ours["motor_mode"] == NETWORK).mean()),
+    )
+
+
+def finer_current(bench: Bench) -> Rows:
+    """Return the current of the minute at each tick from steps that are `FINER` times shorter."""
+    inputs = np.repeat(calm_minute(bench), FINER, axis=0)
+    outputs = np.empty((len(inputs), len(OUTPUTS)))
+    row = pack(bench.parameters._replace(step_s=bench.parameters.step_s / FINER))
+    simulate_rows(bench.state_row.copy(), inputs, row, bench.tables, outputs)
+    return outputs[::FINER, _CURRENT].copy()
+
+
+def lines(compared: list[Compared], seconds: float) -> list[str]:
+    """Return the table for a terminal."""
+    head = (
+        f"a calm minute, against the reduced plant at steps {FINER} times shorter; {seconds:g} s on the bus, against "
+        f"the reduced plant (goals: {100.0 * CURRENT_GOAL:g} % of the current's range, {ANGLE_GOAL_DEG:g} deg)"
+    )
+    rows = [head, f"{'':16}{'step':>9}{'to C':>7}{'current RMS':>16}{'stops':>10}{'angle':>10}{'current':>10}"
+                  f"{'in charge':>17}{'kept':>6}"]  # fmt: skip
+    for one in compared:
+        angle = "-" if np.isnan(one.worst_angle_deg) else f"{one.worst_angle_deg:.2f} deg"
+        charge = f"{100.0 * one.load_in_charge:.0f} %, {100.0 * one.motor_in_charge:.0f} %"
+        rows.append(
+            f"{one.name:16}{one.step_ns:6.0f} ns{one.step_ns / one.c_step_ns:7.2f}"
+            f"{one.current_rms_a:9.4f} A{100.0 * one.current_rms_a / one.current_range_a:4.1f}%"
+            f"{one.stops:6}/{one.stops_of_physical}{angle:>10}{100.0 * one.bus_current_share:8.2f} %{charge:>17}"
+            f"{'yes' if one.kept else 'NO':>6}"
+        )
+    return rows
+
+
+def plot(compared: list[Compared], path: Path) -> None:
+    """Draw accuracy against cost."""
+    figure, axis = plt.subplots(figsize=(8, 5), layout="constrained")
+    for one in compared:
+        filled = "network" not in one.name
+        axis.plot(one.step_ns, one.current_rms_a, "o" if filled else "D", markersize=8, label=one.name)
+        at, offset = (one.step_ns, one.current_rms_a), _LABELS.get(one.name, (8, 4))
+        axis.annotate(one.name, at, xytext=offset, textcoords="offset points")
+    goal = CURRENT_GOAL * compared[0].current_range_a
+    axis.axhline(goal, color="grey", linestyle="--", linewidth=1.0)
+    axis.annotate("3 % of the range", (0.98, goal), xycoords=("axes fraction", "data"), ha="right", va="bottom")
+    axis.set(yscale="log", xlabel="cost of a step [ns]", ylabel="RMS error of the current over a minute [A]")
+    axis.set_xlim(0.0, 1.2 * max(one.step_ns for one in compared))
+    axis.grid(visible=True, which="both", alpha=0.3)
+    axis.set_title("Lower left is better: circles are physics, diamonds networks")
+    figure.savefig(path, dpi=120)
+    plt.close(figure)
+
+
+def surrogates_study(seconds: float, out: Path | None) -> tuple[bool, dict[str, Any]]:
+    """Print the comparison, draw it into `out`, and say whether every network kept the goals."""
+    compared = compare(seconds)
+    print("\n".join(lines(compared, seconds)))
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        plot(compared, out / "surrogates.png")
+        print(f"{out / 'surrogates.png'} written")
+    figures: dict[str, Any] = {"bus_s": seconds}
+    for one in compared:
+        key = one.name.replace(" ", "_")
+        figures |= {
+            f"{key}_step_ns": one.step_ns,
+            f"{key}_step_ratio_to_c": one.step_ns / one.c_step_ns,
+            f"{key}_current_rms_a": one.current_rms_a,
+            f"{key}_stops": one.stops,
+            f"{key}_worst_angle_deg": None if np.isnan(one.worst_angle_deg) else one.worst_angle_deg,
+            f"{key}_bus_current_share": one.bus_current_share,
+            f"{key}_kept": one.kept,
+        }
+    return all(one.kept for one in compared if "network" in one.name), figures

@@ -1,0 +1,57 @@
+"""The study of Table 6-1 and Figure 6-7: networks of 1 to 20 neurons, the mean of three trainings each."""
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import astuple, dataclass, replace
+
+import numpy as np
+
+from hilplant.train.torque import Data, Plan, one_thread, train_once
+
+#: Trainings of each size.
+TRAININGS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Studied:
+    """Means over the trainings of one size: errors [(N m)^2] and time of one training [s]."""
+
+    neurons: int
+    harmonics: int
+    train: float
+    validate: float
+    test: float
+    total: float
+    validation: float
+    worst_validation: float
+    seconds: float
+
+
+def study(
+    data: Data, plan: Plan, sizes: Sequence[int], progress: Callable[[int, int], None] | None = None
+) -> Iterator[Studied]:
+    """Yield the figures of each size, with the inputs of `plan`; an interrupt ends the study.
+
+    `progress` is called with the neurons and the number of the training before each.
+    """
+    with one_thread():
+        for neurons in sizes:
+            found = _size(data, replace(plan, neurons=neurons), progress)
+            if found is None:
+                return
+            yield found
+
+
+def _size(data: Data, plan: Plan, progress: Callable[[int, int], None] | None) -> Studied | None:
+    begin, errors = time.perf_counter(), []
+    for number in range(TRAININGS):
+        if progress is not None:
+            progress(plan.neurons, number)
+        trained = train_once(data, plan, number)
+        if trained.interrupted:
+            return None
+        errors.append(astuple(trained.errors))
+    seconds = (time.perf_counter() - begin) / TRAININGS
+    train, validate, test, total, validation = (float(value) for value in np.mean(errors, axis=0))
+    worst = float(np.max(errors, axis=0)[4])
+    return Studied(plan.neurons, plan.harmonics, train, validate, test, total, validation, worst, seconds)

@@ -1,0 +1,34 @@
+"""The step with networks by hand in C and the compiled Python give the same bits, through every hand-over."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hilplant.bench import load_bench
+from hilplant.benchmarks.c_step import compile_networks
+from hilplant.models.plant import simulate_rows
+from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
+from hilplant.train.motor_data import excitation
+
+
+@pytest.mark.parametrize("name", ["default", "polynomial", "network", "networks"])
+def test_both_go_alike_through_mixed_scenarios_with_faults(name: str, tmp_path: Path) -> None:
+    bench, random = load_bench(name), np.random.default_rng(8)
+    rows = np.concatenate([excitation(bench, brush, 4.0, random) for brush in ("slow", "fast", "slow", "fast")])
+    screen, brake = rows[:, INPUT_INDEX["screen"]], rows[:, INPUT_INDEX["brake_torque_n_m"]]
+    screen[6000:], brake[9000:] = np.round(screen[6000:]), 0.0
+    rows[12_000:13_000, INPUT_INDEX["supply_v"]] += 10.0
+    rows[-500, INPUT_INDEX["supply_v"]] = np.nan
+    ours, theirs = np.empty((2, len(rows), len(OUTPUTS)))
+    states = [bench.state_row.copy(), bench.state_row.copy()]
+    simulate_rows(states[0], rows, bench.parameter_row, bench.tables, ours)
+    in_c = compile_networks(tmp_path, "-Wall", "-Wextra", "-Werror")
+    in_c(states[1], rows, bench.parameter_row, bench.tables, theirs)
+    if name == "networks":
+        assert set(np.unique(ours[:-500, OUTPUT_INDEX["motor_mode"]])) == {1.0, 2.0, 3.0}
+        assert {1.0, 3.0} <= set(np.unique(ours[:-500, OUTPUT_INDEX["load_mode"]]))
+    assert ours[-1, OUTPUT_INDEX["guard"]] == 1.0
+    scale = np.abs(theirs).max(axis=0) + 1e-300
+    assert (np.abs(ours - theirs) / scale).max() < 1e-9
+    assert states[0] == pytest.approx(states[1], rel=1e-9, abs=1e-12)
