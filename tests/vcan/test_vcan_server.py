@@ -178,7 +178,7 @@ def delays_in_ticks(recording: Path) -> list[int]:
     """Return, for each commanded change of the terminal voltage, the ticks until a MotorStatus shows it."""
     import pyarrow as pa
 
-    voltages = {"0100": 13500, "0300": 13500, "0000": 0}
+    voltages = {"0100": 6750, "0300": 6750, "0000": 0}  # 0.002 V a bit
     shown, wanted = 0, 0
     since: int | None = None
     delays: list[int] = []
