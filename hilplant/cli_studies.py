@@ -121,7 +121,7 @@ def study_surrogates(
 ) -> None:
     """Compare cost and accuracy of all loads and motors, and what an ECU sees of them.
 
-    Exit code 1 when a network is not as good as the physical plant to the ECU.
+    Exit code 1 when to the ECU one is not as good as the physics that it stands for.
     """
     from hilplant.studies.surrogate_study import surrogates_study
 

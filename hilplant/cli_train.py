@@ -37,10 +37,9 @@ def train_tables(
     write_json(json_file, run(bench, bound, out))
 
 
-@train_app.command("polynomial", epilog="Example: hilplant train polynomial default --out polynomial")
+@train_app.command("polynomial", epilog="Example: hilplant train polynomial linkage_alone --out polynomial")
 def train_polynomial(
     bench: BenchName = DEFAULT,
-    joint_damping: Annotated[float, typer.Option(min=0.0, help="damping of each pivot [N m s/rad]")] = 0.11,
     out: Out = Path("trained-polynomial"),
     json_file: JsonFile = None,
 ) -> None:
@@ -51,7 +50,7 @@ def train_polynomial(
     from hilplant.train.command import train_polynomial as run
 
     claim(json_file)
-    write_json(json_file, run(bench, joint_damping, out))
+    write_json(json_file, run(bench, out))
 
 
 @train_app.command("torque", epilog="Example: hilplant train torque default --out trained --seed 1")

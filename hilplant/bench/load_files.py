@@ -111,7 +111,6 @@ class PolynomialFile(TrainedFile):
     reverse: Annotated[list[Real], Field(min_length=8, max_length=8)]
     c1: Real
     c2: NotNegative
-    joint_damping_n_m_s: NotNegative
     training: dict[str, Numbers | int]
     errors: dict[str, NotNegative]
 

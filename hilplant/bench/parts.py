@@ -133,6 +133,7 @@ class LinkageFile(Sourced, PointsSection):
     least_transmission_deg: Annotated[float, Field(gt=0, lt=90)] = LEAST_TRANSMISSION_DEG
     least_clearance_m: NotNegative | None = None
     masses_kg: dict[str, NotNegative] | None = None
+    pivot_damping_n_m_s: NotNegative = 0.0
     left_arm: ArmSection
     right_arm: ArmSection
     left_blade: BladeSection

@@ -116,7 +116,8 @@ def _parts(file: Place, written: LinkageFile, around: Surroundings) -> WiperPart
     masses = _attempt(file.inner("masses_kg"), lambda: linkage_masses(linkage.bodies, written.masses_kg or {}))
     if masses is None or not complete:
         return None
-    return WiperParts(linkage, left, right, masses, around.screen_angle_rad, around.points)
+    damping = written.pivot_damping_n_m_s
+    return WiperParts(linkage, left, right, masses, around.screen_angle_rad, damping, around.points)
 
 
 def _linkage(written: LinkageFile) -> Linkage:

@@ -4,7 +4,7 @@
 
 #include "records.h"
 
-enum { LEFT_ROCKER, RIGHT_ROCKER, INERTIA, GRAVITY, DRAG, LEFT_LIFT, RIGHT_LIFT, POINTS };
+enum { LEFT_ROCKER, RIGHT_ROCKER, INERTIA, GRAVITY, DRAG, LEFT_LIFT, RIGHT_LIFT, DAMPING, POINTS };
 static const double SATURATED = 20.0, TACKY = 0.5, SLOWEST = 0.005, MM_PER_M = 1000.0;
 
 /* Two neighbouring knots, and the weights of their values and derivatives. */
@@ -143,7 +143,8 @@ static inline Resistance reduced(const Place *at, double crank_speed, const Load
     const double torque = left.mu + right.mu;
     double slope = left.slope + right.slope;
     if (slope < 0.0 || turning <= SLOWEST || slope * speed > torque) slope = 0.0;
-    return (Resistance){value(at, INERTIA), bias, in->brake + torque - slope * speed, slope};
+    const double dry = in->brake + torque - slope * speed, damping = value(at, DAMPING);
+    return (Resistance){value(at, INERTIA), bias, dry, slope + damping};
 }
 
 static inline Resistance by_speed(double angle, double speed, const Load *load, const Inputs *in)

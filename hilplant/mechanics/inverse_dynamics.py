@@ -6,7 +6,7 @@ motion being given, the multipliers follow from one linear system. -Cq^T lambda 
 act on the bodies; that of the driving constraint (4.9) is the torque at the crank.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -36,7 +36,8 @@ class AppliedForce:
 class JointLoad:
     """What a joint carries: force [N] [m, 2] and moment [N m] [m] with which `second` acts on `first` at `pin`.
 
-    The moment is zero in a joint that turns. Where the wiper is held, `first` is the ground and `second` the car.
+    In a joint that turns the moment is that of its damping. Where the wiper is held, `first` is the ground and `second`
+    the car.
     """
 
     first: str
@@ -66,15 +67,19 @@ def inverse_dynamics(wiper: Wiper, moving: Motion, crank: CrankMotion, applied: 
     crank
         How the crank moves at each position.
     applied
-        Forces on the blades, or on any other point. Gravity is taken into account already.
+        Forces on the blades, or on any other point. Gravity and the damping of the pivots are in already.
 
     """
     forces = _gravity(wiper, moving) - _masses(wiper) * _accelerations(moving, crank)
+    damping = _damping(wiper, moving, crank)
+    for (first, second), moment in damping.items():
+        forces[:, wiper.mechanism.angle(first)] += moment
+        forces[:, wiper.mechanism.angle(second)] -= moment
     for force in applied:
         forces += _generalised(wiper, moving, force)
     transposed = np.swapaxes(wiper.mechanism.jacobian(moving.coordinates), -1, -2)
     multipliers = np.asarray(np.linalg.solve(transposed, forces[..., np.newaxis])[..., 0], dtype=np.float64)
-    return _sorted(wiper, multipliers)
+    return _sorted(wiper, multipliers, damping)
 
 
 def _accelerations(moving: Motion, crank: CrankMotion) -> Floats:
@@ -93,6 +98,20 @@ def _gravity(wiper: Wiper, moving: Motion) -> Floats:
     return forces
 
 
+def _damping(wiper: Wiper, moving: Motion, crank: CrankMotion) -> dict[tuple[str, str], Floats]:
+    """Return the moments [N m] [m] with which the second body acts on the first in the pivots of crank and rockers."""
+    held = {joint.body for joint in wiper.joints if isinstance(joint, Ground)}
+    moments = {}
+    for joint in wiper.joints:
+        if isinstance(joint, Revolute):
+            names = joint.first[0], joint.second[0]
+            for body, base, sign in ((*names, -1.0), (*names[::-1], 1.0)):
+                if body in wiper.pivoted and base in held:
+                    rate = moving.rates[:, wiper.mechanism.angle(body)]
+                    moments[names] = sign * wiper.pivot_damping_n_m_s * rate * crank.speed_rad_s
+    return moments
+
+
 def _generalised(wiper: Wiper, moving: Motion, applied: AppliedForce) -> Floats:
     """Return the forces and the moment about the body's centre."""
     body = wiper.mechanism.bodies[applied.pin[0]]
@@ -103,7 +122,7 @@ def _generalised(wiper: Wiper, moving: Motion, applied: AppliedForce) -> Floats:
     return forces
 
 
-def _sorted(wiper: Wiper, multipliers: Floats) -> Loads:
+def _sorted(wiper: Wiper, multipliers: Floats, damping: Mapping[tuple[str, str], Floats]) -> Loads:
     """Give the multipliers their names, in the order of the constraint equations."""
     row, torque, loads = 0, np.zeros(len(multipliers)), []
     none = np.zeros(len(multipliers))
@@ -114,7 +133,8 @@ def _sorted(wiper: Wiper, multipliers: Floats) -> Loads:
                 loads.append(JointLoad(body, "car", (body, (0.0, 0.0)), force, -multipliers[:, row + 2]))
                 row += 3
             case Revolute(first, second):
-                loads.append(JointLoad(first[0], second[0], first, force, none))
+                moment = damping.get((first[0], second[0]), none)
+                loads.append(JointLoad(first[0], second[0], first, force, moment))
                 row += 2
             case Rigid(first, second):
                 loads.append(JointLoad(first[0], second[0], first, force, multipliers[:, row + 2]))

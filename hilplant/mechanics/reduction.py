@@ -1,9 +1,9 @@
 """The whole wiper seen from the crank: inertia, gravity, drag, and how far each blade point moves.
 
 With one degree of freedom, virtual power at the crank replaces all joint forces. The torque at the crank is
-tau = M a + M' w^2 / 2 + G + V^2 D + sum of |J_i| F_i over the blades' points, with
-M = sum of m (x'^2 + y'^2) + I phi'^2, M' = 2 sum of m (x' x'' + y' y'') + I phi' phi'', G = sum of m g y'. A dash is a
-derivative by the crank angle.
+tau = M a + M' w^2 / 2 + G + V^2 D + B w + sum of |J_i| F_i over the blades' points, with
+M = sum of m (x'^2 + y'^2) + I phi'^2, M' = 2 sum of m (x' x'' + y' y'') + I phi' phi'', G = sum of m g y',
+B = d (1 + left'^2 + right'^2). A dash is a derivative by the crank angle.
 """
 
 from dataclasses import dataclass
@@ -50,17 +50,21 @@ class SideCurves:
 
 @dataclass(frozen=True, slots=True)
 class Reduction:
-    """The wiper at the crank: inertia M [kg m2], gravity torque G [N m], positive against positive speed, blades."""
+    """The wiper at the crank: inertia M [kg m2], gravity torque G [N m], positive against positive speed, blades.
+
+    `damping` B is that of the pivots [N m s/rad].
+    """
 
     inertia: Curve
     gravity: Curve
+    damping: Curve
     left: SideCurves
     right: SideCurves
 
     def moving_torque(self, speed_rad_s: Floats | float, acceleration_rad_s2: Floats | float) -> Floats:
-        """Return M a + M' w^2 / 2 + G [N m], the torque that moves the wiper without wind and friction."""
+        """Return M a + M' w^2 / 2 + G + B w [N m], the torque that moves the wiper without wind and blade friction."""
         inertial = self.inertia.value * acceleration_rad_s2 + self.inertia.slope * (np.square(speed_rad_s) / 2.0)
-        return np.asarray(inertial + self.gravity.value)
+        return np.asarray(inertial + self.gravity.value + self.damping.value * speed_rad_s)
 
 
 def reduce(wiper: Wiper, moving: Motion) -> Reduction:
@@ -73,7 +77,7 @@ def reduce(wiper: Wiper, moving: Motion) -> Reduction:
 
     """
     left, right = (_side(wiper, moving, side) for side in wiper.sides)
-    return Reduction(_inertia(wiper, moving), _gravity(wiper, moving), left, right)
+    return Reduction(_inertia(wiper, moving), _gravity(wiper, moving), _damping(wiper, moving), left, right)
 
 
 def _inertia(wiper: Wiper, moving: Motion) -> Curve:
@@ -84,6 +88,14 @@ def _inertia(wiper: Wiper, moving: Motion) -> Curve:
 def _gravity(wiper: Wiper, moving: Motion) -> Curve:
     weights = wiper.masses_kg * wiper.gravity_m_s2
     return Curve(moving.rates[:, 1::3] @ weights, moving.accelerations[:, 1::3] @ weights)
+
+
+def _damping(wiper: Wiper, moving: Motion) -> Curve:
+    """Return what the damping of crank and rockers in their pivots comes to at the crank [N m s/rad]."""
+    angles = [wiper.mechanism.angle(name) for name in wiper.pivoted]
+    rates, changes = moving.rates[:, angles], moving.accelerations[:, angles]
+    damping = wiper.pivot_damping_n_m_s
+    return Curve(damping * np.sum(rates**2, axis=1), damping * 2.0 * np.sum(rates * changes, axis=1))
 
 
 def _side(wiper: Wiper, moving: Motion, side: Side) -> SideCurves:

@@ -11,6 +11,7 @@ from hilplant.mechanics.planar import Floats
 from hilplant.mechanics.reduction import Curve, Reduction, reduce
 from hilplant.mechanics.wiper import Wiper
 from hilplant.models.tables import (
+    DAMPING,
     DRAG,
     GRAVITY,
     INERTIA,
@@ -65,6 +66,7 @@ def channel_names(points: int) -> list[str]:
         DRAG: "drag torque [N m s2/m2]",
         LEFT_LIFT: "left lift [N s2/m2]",
         RIGHT_LIFT: "right lift [N s2/m2]",
+        DAMPING: "damping of the pivots [N m s/rad]",
     }
     sides = [f"{side} blade point {index + 1} [m/rad]" for side in ("left", "right") for index in range(points)]
     return [named[channel] for channel in range(POINTS)] + sides
@@ -81,6 +83,7 @@ def _in_order(reduced: Reduction) -> list[Curve]:
         DRAG: Curve(left.drag.value + right.drag.value, left.drag.slope + right.drag.slope),
         LEFT_LIFT: left.lift,
         RIGHT_LIFT: right.lift,
+        DAMPING: reduced.damping,
     }
     curves = [fixed[channel] for channel in range(POINTS)] + [*left.points, *right.points]
     if len(curves) != channels(len(left.points)):

@@ -49,6 +49,8 @@ class WiperParts:
         The parts that move.
     masses_kg
         Mass of each moving body of the linkage, by name; empty when none are known.
+    pivot_damping_n_m_s
+        Viscous damping of crank and rockers, each in its pivot on the ground.
     screen_angle_rad
         gamma of (4.47).
     points
@@ -63,6 +65,7 @@ class WiperParts:
     right: SideParts
     masses_kg: Mapping[str, float] = field(default_factory=dict)
     screen_angle_rad: float = 0.0
+    pivot_damping_n_m_s: float = 0.0
     points: int = 1
     air_density_kg_m3: float = AIR_DENSITY_KG_M3
 
@@ -91,6 +94,8 @@ class Wiper:
         What the rockers carry.
     air_density_kg_m3
         rho of (4.51), (4.52).
+    crank, pivot_damping_n_m_s
+        Name of that body; damping of crank and rockers, each in its pivot on the ground.
 
     """
 
@@ -106,6 +111,13 @@ class Wiper:
     left: Side
     right: Side
     air_density_kg_m3: float
+    crank: str
+    pivot_damping_n_m_s: float
+
+    @property
+    def pivoted(self) -> tuple[str, str, str]:
+        """Names of the bodies that turn about a pivot on the ground: crank, left and right rocker."""
+        return self.crank, self.left.rocker, self.right.rocker
 
     @property
     def sides(self) -> tuple[Side, Side]:
@@ -145,6 +157,8 @@ def assemble(parts: WiperParts) -> Wiper:
         left=left.side,
         right=right.side,
         air_density_kg_m3=parts.air_density_kg_m3,
+        crank=linkage.crank,
+        pivot_damping_n_m_s=parts.pivot_damping_n_m_s,
     )
 
 
@@ -153,6 +167,8 @@ def _check(parts: WiperParts) -> None:
         raise GeometryError(f"points: friction acts on at least 1 point of a blade, not {parts.points}")
     if not (math.isfinite(parts.air_density_kg_m3) and parts.air_density_kg_m3 > 0.0):
         raise CoefficientError(f"air density: must be above 0 kg/m3, not {parts.air_density_kg_m3}")
+    if not (math.isfinite(parts.pivot_damping_n_m_s) and parts.pivot_damping_n_m_s >= 0.0):
+        raise CoefficientError(f"damping of the pivots: must be at least 0 N m s/rad, not {parts.pivot_damping_n_m_s}")
 
 
 def _check_names(bodies: tuple[Body, ...]) -> None:

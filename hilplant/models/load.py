@@ -3,9 +3,11 @@
 The reduced load is the whole wiper, which has one degree of freedom: linkage, arms and blades follow the crank.
 With the crank's speed w, in the direction of motion s = +1 or -1, the torque at the crank is
 
-    M(angle) dw/dt + s [M'(angle) w^2/2 + G(angle) + V^2 drag(angle)] + sum of |J| F/n mu(|J w|) + brake,
+    M(angle) dw/dt + s [M'(angle) w^2/2 + G(angle) + V^2 drag(angle)] + D(angle) |w|
+        + sum of |J| F/n mu(|J w|) + brake,
 
-the sum over the n points of each blade, J a point's way by crank angle, F the force of its blade on the screen.
+D the damping of the pivots, the sum over the n points of each blade, J a point's way by crank angle, F the force of its
+blade on the screen.
 """
 
 from typing import Any, NamedTuple
@@ -124,8 +126,9 @@ def reduced(crank: Crank, load: Load, inputs: Inputs) -> Resistance:
     torque, slope = left[0] + right[0], left[1] + right[1]
     if slope < 0.0 or turning <= SLOWEST_RAD_S or slope * speed > torque:
         slope = 0.0
-    inertia = value(tables, place, channel.INERTIA)
-    return Resistance(inertia, bias, inputs.brake_torque_n_m + torque - slope * speed, slope)
+    dry = inputs.brake_torque_n_m + torque - slope * speed
+    damping = value(tables, place, channel.DAMPING)
+    return Resistance(value(tables, place, channel.INERTIA), bias, dry, slope + damping)
 
 
 @compiled

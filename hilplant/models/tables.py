@@ -11,7 +11,8 @@ GRAVITY = 3  #: torque of gravity at the crank [N m], positive when it opposes p
 DRAG = 4  #: torque of drag at the crank by the square of the air speed [N m s2/m2], signed as gravity
 LEFT_LIFT = 5  #: lift of the left blade by the square of the air speed [N s2/m2], positive away from the screen
 RIGHT_LIFT = 6  #: the same of the right blade
-POINTS = 7  #: first of the left blade's points, then those of the right: way by crank angle [m/rad], signed
+DAMPING = 7  #: viscous damping of the pivots seen at the crank [N m s/rad]
+POINTS = 8  #: first of the left blade's points, then those of the right: way by crank angle [m/rad], signed
 
 
 def channels(points: int) -> int:

@@ -48,6 +48,7 @@ class ClosedFormWiper:
     right: Side = Side((0.72, -0.02, 0.04), 0.54, 0.09, 0.4, 0.07 * 0.175, 0.07 * 0.0517)
     crank_inertia_kg_m2: float = 0.002
     points: int = 1
+    pivot_damping_n_m_s: float = 0.0
 
     def energy(self, angle: float, speed: float) -> float:
         """Return kinetic and potential energy [J] at a crank angle [rad] and crank speed [rad/s]."""
@@ -61,12 +62,15 @@ class ClosedFormWiper:
         """Return [channels, 2], values and derivatives at a crank angle, in the order of the tables."""
         table = np.zeros((channel.channels(self.points), 2))
         table[channel.INERTIA, 0] = self.crank_inertia_kg_m2
+        table[channel.DAMPING, 0] = self.pivot_damping_n_m_s
         pressure = 0.5 * AIR_DENSITY_KG_M3
         for k, side in enumerate((self.left, self.right)):
             psi, rate, bend = side.rocker(angle)
             way = np.array([rate, bend])
             table[channel.LEFT_ROCKER + k] = psi, rate
-            table[channel.INERTIA] += side.inertia_kg_m2 * rate * np.array([rate, 2.0 * bend])
+            squared = rate * np.array([rate, 2.0 * bend])
+            table[channel.INERTIA] += side.inertia_kg_m2 * squared
+            table[channel.DAMPING] += self.pivot_damping_n_m_s * squared
             pull = rate * math.cos(psi), bend * math.cos(psi) - rate * rate * math.sin(psi)
             table[channel.GRAVITY] += side.weight_n_m * np.array(pull)
             table[channel.DRAG] -= pressure * side.drag_m2 * side.length_m * way

@@ -88,7 +88,7 @@ class Equations:
         table, wind = self.channels(angle), inputs.vehicle_speed_m_s**2
         inertia, inertia_slope = table[channel.INERTIA]
         driving = 0.5 * inertia_slope * speed**2 + table[channel.GRAVITY, 0] + wind * table[channel.DRAG, 0]
-        torque = direction * driving + inputs.brake_torque_n_m
+        torque = direction * driving + inputs.brake_torque_n_m + table[channel.DAMPING, 0] * abs(speed)
         rubbing = max(abs(speed), self.slowest_rad_s)
         for side, blade in enumerate((load.left_blade, load.right_blade)):
             torque += self.rubbing_torque(side, blade, table, rubbing)

@@ -99,13 +99,13 @@ def study_torque(bench_name: str, wish: Wish, most_neurons: int) -> Figures:
     return figures
 
 
-def train_polynomial(bench_name: str, joint_damping_n_m_s: float, out: Path) -> Figures:
+def train_polynomial(bench_name: str, out: Path) -> Figures:
     """Fit (6.1)-(6.3) to a bench's linkage and write `polynomial.yaml`, `report.md` and a plot."""
     bench, folder = load_bench(bench_name), folder_of(out)
     wiper = bench.plant.mechanics.wiper
-    shape = no_load.no_load_shape(wiper, joint_damping_n_m_s)
+    shape = no_load.no_load_shape(wiper)
     fitted = no_load.fit(shape)
-    content = no_load.content_of(bench, shape, fitted, joint_damping_n_m_s)
+    content = no_load.content_of(bench, shape, fitted)
     path = folder / "polynomial.yaml"
     write_file(path, content)
     random = np.random.default_rng(1)
@@ -115,7 +115,7 @@ def train_polynomial(bench_name: str, joint_damping_n_m_s: float, out: Path) -> 
     lines = [
         f"c1 = {fitted.c1:.6g}, c2 = {fitted.c2:.6g} (thesis 0.0035, 0.2738)",
         f"cost (6.5) {content['errors']['cost_n_m']:.4g} N m",
-        f"damping of each pivot {joint_damping_n_m_s:g} N m s/rad (assumed)",
+        f"damping of each pivot {wiper.pivot_damping_n_m_s:g} N m s/rad",
     ]
     table = markdown_table(["error", "five speeds", "200 random speeds, 1 to 7 rad/s"], rows)
     page = write_page(folder, f"No-load polynomial of the bench {bench.name}", [

@@ -1,8 +1,7 @@
 """The no-load torque of any linkage as two polynomials, section 6.3 of Dooner (2016).
 
 A linkage without arms and blades needs the torque of its inertia, M'(angle) w^2/2, and of what little damping its
-joints have. The source gives neither masses nor damping for its fit. Here each of the three pivots on the ground,
-crank and both rockers, has the same damping d: d w (1 + left'^2 + right'^2).
+pivots have. The source gives neither masses nor damping for its fit; here both are those of the bench's linkage.
 """
 
 from collections.abc import Sequence
@@ -21,7 +20,7 @@ from hilplant.bench.parameter_hash import linkage_hash
 from hilplant.failure import Failure
 from hilplant.mechanics.tables import exact_rows
 from hilplant.mechanics.wiper import Wiper
-from hilplant.models.tables import INERTIA, LEFT_ROCKER, RIGHT_ROCKER
+from hilplant.models.tables import DAMPING, INERTIA
 from hilplant.train.writing import data_hash
 from hilplant.units import TURN_RAD
 
@@ -30,9 +29,6 @@ Floats = NDArray[np.float64]
 #: Five speeds of the crank [rad/s], and points of a turn: N of (6.4).
 SPEEDS_RAD_S = (2.0, 3.0, 4.0, 5.0, 6.0)
 POINTS = 1001
-
-#: Damping of each pivot [N m s/rad] with which the mean torque is that of the published polynomials.
-JOINT_DAMPING_N_M_S = 0.11
 
 FORWARD_DEGREE, REVERSE_DEGREE = 4, 7
 
@@ -71,7 +67,7 @@ class Polynomials:
         return speed_rad_s * self.c2 * (self.shape(angles) + speed_rad_s * self.c1)
 
 
-def no_load_shape(wiper: Wiper, joint_damping_n_m_s: float, points: int = POINTS) -> Shape:
+def no_load_shape(wiper: Wiper, points: int = POINTS) -> Shape:
     """Return the torque of the linkage alone; arms and blades have no mass in it."""
     own = set(wiper.linkage.bodies)
     kept = np.array([body.name in own for body in wiper.bodies])
@@ -80,8 +76,7 @@ def no_load_shape(wiper: Wiper, joint_damping_n_m_s: float, points: int = POINTS
         raise Failure("the linkage has no masses_kg, so it has no torque of inertia to fit")
     angles = np.linspace(0.0, TURN_RAD, points, endpoint=False)
     rows = exact_rows(bare, angles)
-    pivots = 1.0 + rows[:, LEFT_ROCKER, 1] ** 2 + rows[:, RIGHT_ROCKER, 1] ** 2
-    return Shape(angles, joint_damping_n_m_s * pivots, 0.5 * rows[:, INERTIA, 1])
+    return Shape(angles, rows[:, DAMPING, 0], 0.5 * rows[:, INERTIA, 1])
 
 
 def fit(shape: Shape, speeds_rad_s: Sequence[float] = SPEEDS_RAD_S) -> Polynomials:
@@ -133,12 +128,12 @@ def errors(shape: Shape, fitted: Polynomials, speeds_rad_s: Sequence[float]) -> 
     }
 
 
-def content_of(bench: Bench, shape: Shape, fitted: Polynomials, joint_damping_n_m_s: float) -> dict[str, Any]:
+def content_of(bench: Bench, shape: Shape, fitted: Polynomials) -> dict[str, Any]:
     """Return what the file says."""
     return {
         "format": POLYNOMIAL_FORMAT,
         "bench": bench.name,
-        "command": f"hilplant train polynomial {bench.name} --joint-damping {joint_damping_n_m_s:g}",
+        "command": f"hilplant train polynomial {bench.name}",
         "version": __version__,
         "parameter_hash": linkage_hash(bench.plant.mechanics.written),
         "data_hash": data_hash(shape.by_speed, shape.by_square),
@@ -146,7 +141,6 @@ def content_of(bench: Bench, shape: Shape, fitted: Polynomials, joint_damping_n_
         "reverse": fitted.reverse.tolist(),
         "c1": fitted.c1,
         "c2": fitted.c2,
-        "joint_damping_n_m_s": float(joint_damping_n_m_s),
         "training": {"speeds_rad_s": list(SPEEDS_RAD_S), "points_of_a_wipe": POINTS},
         "errors": {"cost_n_m": cost(shape, fitted), **errors(shape, fitted, SPEEDS_RAD_S)},
     }

@@ -47,6 +47,7 @@ def shaken_parts(random: np.random.Generator) -> WiperParts:
         _shaken_side(random),
         masses_kg={name: float(random.uniform(0.0, 1.0)) for name in MASSES_KG},
         screen_angle_rad=float(random.uniform(-1.2, 1.2)),
+        pivot_damping_n_m_s=float(random.uniform(0.0, 0.3)),
         points=int(random.integers(1, 5)),
     )
 

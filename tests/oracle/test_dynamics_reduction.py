@@ -39,6 +39,7 @@ def disagreement(wiper: Wiper, random: np.random.Generator, loaded: bool) -> flo
     torque, applied = reduced.moving_torque(*crank), []
     size = np.abs(reduced.inertia.value * crank.acceleration_rad_s2) + np.abs(reduced.gravity.value)
     size += np.abs(reduced.inertia.slope * np.square(crank.speed_rad_s) / 2.0)
+    size += np.abs(reduced.damping.value * crank.speed_rad_s)
     for side, curves in zip(wiper.sides, (reduced.left, reduced.right), strict=True):
         for pin, curve in zip(side.friction, curves.points, strict=True):
             force = random.normal(0.0, 20.0, (50, 2)) * loaded

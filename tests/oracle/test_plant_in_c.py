@@ -21,7 +21,10 @@ Random = np.random.Generator
 WARNINGS = ("-Wall", "-Wextra", "-Werror")
 #: Loads without networks, by the number that ``Load.model`` gives them.
 LOADS = {"none": 0.0, "polynomial": 1.0, "reduced": 2.0}
-TABLES = {points: ClosedFormWiper(points=points).tables(256) for points in (1, 3)}
+TABLES = {
+    points: ClosedFormWiper(points=points, pivot_damping_n_m_s=damping).tables(256)
+    for points, damping in ((1, 0.0), (3, 0.1))
+}
 FRICTION = Friction(
     0.3186, 0.1238, 1.996, 19.96, 0.4454, 4.454, 7.578e-3, 0.6756, 6.756, 2.795e-4, 3.456e-3, 2.4, 0.5, 0.6, 0.02, 900.0
 )

@@ -11,6 +11,7 @@ from hilplant.bus.transport import SendResult
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.server import build_loop
 from hilplant.signals import IN_CHARGE
+from hilplant.studies.bus_run import ROUND_S, drive
 
 RELAY, ENVIRONMENT, LOSS_FAULTS, LINKAGE = 0x120, 0x122, 0x214, 0x202
 NETWORK, STANDSTILL, OUTSIDE = (IN_CHARGE.index(name) for name in ("network", "standstill", "outside"))
@@ -89,3 +90,14 @@ def test_the_arms_stay_together(runs) -> None:
     turn = 2.0 * np.pi / 1e-4
     away = np.abs(np.remainder(angles[0] - angles[1] + turn / 2, turn) - turn / 2) * 1e-4
     assert away.max() < np.radians(4.0)
+
+
+@pytest.mark.parametrize("name", ["polynomial", "linkage_alone_polynomial"])
+def test_a_polynomial_parks_where_the_linkage_alone_does(name: str) -> None:
+    """Two rounds of all stages, by the ECU on a bus: as many stops, within 1 deg, current within 3 % of its range."""
+    ours, physical = (drive(load_bench(bench), 2.0 * ROUND_S, look_ms=1.0) for bench in (name, "linkage_alone"))
+    assert ours.frames.keys() == physical.frames.keys()
+    assert len(ours.stops()) == len(physical.stops()) > 8
+    assert np.degrees(np.abs(ours.stops() - physical.stops())).max() < 1.0
+    error = np.sqrt(np.mean((ours["current_a"] - physical["current_a"]) ** 2))
+    assert error < 0.03 * np.ptp(physical["current_a"])

@@ -42,7 +42,7 @@ def test_torque_writes_file_report_plot_and_figures(tmp_path: Path) -> None:
 
 def test_polynomial_and_tables_write_their_files(tmp_path: Path) -> None:
     figures = tmp_path / "figures.json"
-    code, said = run("polynomial", "default", "--out", str(tmp_path / "p"), "--json", str(figures))
+    code, said = run("polynomial", "linkage_alone", "--out", str(tmp_path / "p"), "--json", str(figures))
     assert code == 0 and "0.2738" in said and (tmp_path / "p" / "polynomial.png").is_file()
     assert json.loads(figures.read_text())["share_explained"] > 0.9
     code, said = run("tables", "default", "--bound", "1e-4", "--out", str(tmp_path / "t"), "--json", str(figures))

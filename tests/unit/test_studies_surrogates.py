@@ -18,20 +18,21 @@ def compared(name: str, **changed: float) -> Compared:
 def test_each_model_is_what_its_name_says() -> None:
     found = {
         name: (
-            LOADS[int(bench.parameters.load.model)],
-            bench.parameters.motor_model,
-            len(bench.parameters.networks) > 0,
+            LOADS[int(pair.bench.parameters.load.model)],
+            pair.bench.parameters.motor_model,
+            len(pair.bench.parameters.networks) > 0,
         )
-        for name, bench in models().items()
+        for name, pair in models().items()
     }
     assert found == {
         "reduced": ("reduced", 0.0, False),
         "none": ("none", 0.0, False),
-        "polynomial": ("polynomial", 0.0, False),
-        "own polynomial": ("polynomial", 0.0, True),
         "torque network": ("network", 0.0, True),
         "motor network": ("reduced", 1.0, True),
         "all networks": ("network", 1.0, True),
+        "linkage alone": ("reduced", 0.0, False),
+        "polynomial": ("polynomial", 0.0, False),
+        "own polynomial": ("polynomial", 0.0, True),
     }
 
 
@@ -59,7 +60,7 @@ def test_the_truth_of_the_minute_is_the_step_at_one_millisecond_to_three_digits(
     from hilplant.models.plant import simulate_rows
     from hilplant.signals import OUTPUT_INDEX, OUTPUTS
 
-    bench = models()["reduced"]
+    bench = models()["reduced"].bench
     inputs = calm_minute(bench)
     outputs = np.empty((len(inputs), len(OUTPUTS)))
     simulate_rows(bench.state_row.copy(), inputs, bench.parameter_row, bench.tables, outputs)
