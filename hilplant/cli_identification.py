@@ -1,4 +1,4 @@
-"""The command line of identification: `hilplant identify` and `hilplant validate`."""
+"""The command line of identification: `hilplant identify`, `hilplant validate`, `hilplant motor`."""
 
 import datetime
 from pathlib import Path
@@ -82,7 +82,24 @@ def validate(  # noqa: PLR0913, PLR0917
     raise typer.Exit(0 if good else 1)
 
 
+def motor(
+    readings: Annotated[Path, typer.Argument(help="readings on a bench, or a data sheet, in YAML", metavar="READINGS")],
+    out: Annotated[Path, typer.Option(help="motor file to write")],
+    json_file: JsonFile = None,
+) -> None:
+    """Make a motor's parameters from readings taken one by one, or from its data sheet.
+
+    With the standard error of each; docs/identification.md says what the file of readings holds.
+    """
+    from hilplant.identify.motor_command import motor_from_readings
+
+    claim_beside(out)
+    claim(json_file)
+    write_json(json_file, motor_from_readings(readings, out))
+
+
 def add_to(app: typer.Typer) -> None:
-    """Add both commands to the command line."""
+    """Add these commands to the command line."""
+    app.command(epilog="Example: hilplant motor my_readings.yaml --out my_motor.yaml")(motor)
     app.command(epilog="Example: hilplant identify slow.csv@dry fast.csv@wet --out car.yaml")(identify)
     app.command(epilog="Example: hilplant validate check.csv@dry --bench car.yaml --rms-current-a 0.2")(validate)

@@ -56,12 +56,16 @@ class Sourced(WithAssumptions):
     identified: dict[str, Any] | None = None
 
 
-class BrushSection(Checked):
+class BrushSection(WithAssumptions):
     """The armature circuit seen from one brush, (3.30), (3.31)."""
 
     resistance_ohm: Positive
     inductance_henry: Positive
     constant_v_s: Positive
+
+    def record(self) -> Brush:
+        """Return the parameters as the models take them."""
+        return Brush(self.resistance_ohm, self.inductance_henry, self.constant_v_s)
 
 
 class MotorFile(Sourced):
@@ -78,7 +82,7 @@ class MotorFile(Sourced):
 
     def record(self) -> Motor:
         """Return the parameters as the models take them."""
-        slow, fast = (Brush(*brush.model_dump().values()) for brush in (self.slow, self.fast))
+        slow, fast = self.slow.record(), self.fast.record()
         return Motor(
             slow,
             fast,
