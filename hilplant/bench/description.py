@@ -18,13 +18,16 @@ Messages = Annotated[dict[str, Group], Field(default_factory=dict)]
 Pauses = Annotated[tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]], Field(strict=False)]
 Whole = Annotated[int, Field(ge=0)]
 
+#: The longest step [s] at which the plant keeps to 0.5 % of the range from any start; beyond it a start may fail.
+LONGEST_STEP_S = 0.02
+
 
 class BenchFile(Checked):
     """The outermost keys."""
 
     name: Name
     extends: Name | None = None
-    step_s: Annotated[float, Field(gt=0, le=0.1)] = 0.001
+    step_s: Annotated[float, Field(gt=0, le=LONGEST_STEP_S)] = 0.001
     plant: Group
     bus: Group
     initial: OptionalGroup

@@ -7,11 +7,12 @@ blades at 0.69 and 0.54 m. The step reads it from tables, the reference from its
 import numpy as np
 import pytest
 
+from hilplant.bench.description import LONGEST_STEP_S
 from hilplant.models.records import Arm, Blade, Brush, Friction, Load, Motor, Parameters, ParkSwitch, State
 from hilplant.signals import OUTPUT_INDEX
 from hilplant.studies.closed_form import ClosedFormWiper
 from hilplant.studies.reference import Reference
-from hilplant.studies.solver import DRY, SCENARIOS, WET, Rows, compare, errors_percent, run_step
+from hilplant.studies.solver import DRY, SCENARIOS, TACKY, WET, Rows, compare, errors_percent, run_step
 
 LIMIT_PERCENT = 0.5
 MOTOR = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2), 1.983e-5, 1.582e-4, 0.0, 63.0)
@@ -61,6 +62,21 @@ def test_a_tenth_of_the_step_gives_the_same_motion(scenario: str) -> None:
     fine = run_step(plant(step_s=1e-4), tables, np.repeat(rows, 10, axis=0))[::10]
     truth = np.stack([fine[:, OUTPUT_INDEX["current_a"]], fine[:, SPEED], np.unwrap(fine[:, ANGLE])], axis=1)
     assert max(errors_percent(run_step(plant(), tables, rows), truth)) < LIMIT_PERCENT / 10.0
+
+
+@pytest.mark.parametrize("screen", [DRY, TACKY, WET])
+def test_the_longest_step_of_a_bench_stays_within_the_limit_from_any_start(screen: float) -> None:
+    tables, times, worst = ClosedFormWiper().tables(), round(LONGEST_STEP_S / 1e-3), 0.0
+    rows = Rows(3000, screen=screen, relay_on=1).set(1200, 1500, relay_on=0).set(2100, 3000, relay_fast=1)
+    rows.set(2400, 2700, brake_torque_n_m=500.0)
+    for angle in np.linspace(0.0, 6.28, 40):
+        start = State(0.0, 0.0, angle, 0.0, 0.0, 0.0)
+        fine = run_step(plant(), tables, rows.rows, start)[::times]
+        truth = np.stack([fine[:, OUTPUT_INDEX["current_a"]], fine[:, SPEED], np.unwrap(fine[:, ANGLE])], axis=1)
+        coarse = run_step(plant(step_s=LONGEST_STEP_S), tables, rows.rows[::times], start)
+        worst = max(worst, *errors_percent(coarse, truth))
+    print(f"\n{1e3 * LONGEST_STEP_S:.0f} ms, wetness {screen}: {worst:.1e} %", end="")
+    assert worst < LIMIT_PERCENT
 
 
 def test_backwards_from_a_start_at_speed_agrees_as_well() -> None:

@@ -34,6 +34,7 @@ def test_a_bench_that_only_extends_the_default_one_is_sound(tmp_path: Path) -> N
         ("step_s: true", "3: step_s must be a number, not true"),
         ("step_s: 1e-10", "3: step_s must be a whole number of nanoseconds, not 1e-10"),
         ("step_s: 0", "3: step_s must be greater than 0, not 0"),
+        ("step_s: 0.05", "3: step_s must be less than or equal to 0.02, not 0.05"),
         ("inital: {}", "3: unknown key 'inital', did you mean 'initial'?"),
         ("plant: 3", "3: plant must be a group of keys, not 3"),
         ("plant: {load: none}", "3: load must be a group of keys, not 'none'"),
