@@ -43,6 +43,7 @@ class Plant:
     screen: ScreenFile | None
     blades: Blades | None
     mechanics: Mechanics
+    park_switch: ParkSwitchSection
     load_file: TorqueFile | PolynomialFile | None = None
 
 
@@ -52,7 +53,7 @@ def assemble_plant(place: Place, step_ns: int) -> Plant | None:
     motor = _motor(place.inner("motor"))
     load = _load(place)
     screen, blades = _screen(place.inner("screen")), _blades(place.inner("blades"))
-    park_switch = _park_switch(place.inner("park_switch"), step_ns)
+    park_switch = _park_switch(place.inner("park_switch"))
     complete = not isinstance(load, WholeWiper) or _has_screen_and_blades(place)
     mechanics = read_mechanics(place.inner("linkage"), _surroundings(place, load, screen, blades))
     if motor is None or mechanics is None or load is None or park_switch is None or not complete:
@@ -65,11 +66,11 @@ def assemble_plant(place: Place, step_ns: int) -> Plant | None:
     left, right = mechanics.wiper.left.arm, mechanics.wiper.right.arm
     networks = row_of_networks(trained.numbers, mover.numbers)
     parameters = Parameters(
-        step_ns / SECOND_NS, motor.record(), park_switch, record, left, right, mover.place, networks
+        step_ns / SECOND_NS, motor.record(), _contact(park_switch, step_ns), record, left, right, mover.place, networks
     )
     if not keeps_its_bounds(place.inner("load"), trained, parameters, mechanics.table):
         return None
-    return Plant(parameters, mechanics.table, motor, load, screen, blades, mechanics, trained.file)
+    return Plant(parameters, mechanics.table, motor, load, screen, blades, mechanics, park_switch, trained.file)
 
 
 def _motor(place: Place) -> MotorFile | None:
@@ -148,12 +149,11 @@ def _load_record(load: AnyLoad, trained: TrainedLoad, screen: ScreenFile | None,
     )
 
 
-def _park_switch(place: Place, step_ns: int) -> ParkSwitch | None:
-    if not isinstance(place.data(), dict):
-        return None
-    section = place.take(ParkSwitchSection)
-    if section is None:
-        return None
+def _park_switch(place: Place) -> ParkSwitchSection | None:
+    return place.take(ParkSwitchSection) if isinstance(place.data(), dict) else None
+
+
+def _contact(section: ParkSwitchSection, step_ns: int) -> ParkSwitch:
     return ParkSwitch(
         section.park_angle_deg * RAD_PER_DEG,
         0.5 * section.window_deg * RAD_PER_DEG,

@@ -120,7 +120,7 @@ def _is_pair(written: Any) -> bool:
     return isinstance(written, list) and len(written) == 2 and all(map(_is_number, written))
 
 
-class ParkSwitchSection(Checked):
+class ParkSwitchSection(WithAssumptions):
     """Contact over the crank angle, and the circuit that it is part of."""
 
     park_angle_deg: Annotated[float, Field(ge=0, lt=360)]

@@ -148,6 +148,7 @@ def _assumed(plant: Plant) -> list[str]:
         ("screen.", plant.screen),
         ("blades.left.", left),
         ("blades.right.", right),
+        ("park_switch.", plant.park_switch),
     ]
     return [name for prefix, part in named if part is not None for name in assumed_in(part, prefix)]
 

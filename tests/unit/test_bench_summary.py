@@ -77,9 +77,11 @@ def test_the_bits_of_a_frame_are_those_of_the_standard(tmp_path: Path) -> None:
 def test_every_assumed_value_is_named() -> None:
     assumed = summarise(load_bench()).assumed
     for name in ("linkage.left_arm.mass_kg", "linkage.right_blade.mass_kg", "screen.tacky.mu_tacky_1",
-                 "blades.left.area_m2", "blades.right.lift"):  # fmt: skip
+                 "blades.left.area_m2", "blades.right.lift", "park_switch.window_deg"):  # fmt: skip
         assert name in assumed
     assert "blades.left.force_n" not in assumed
+    assert "park_switch.window_deg" in summarise(load_bench("mechanical")).assumed
+    assert "park_switch.reverse_angle_deg" not in summarise(load_bench("depressed")).assumed
 
 
 def test_a_part_that_is_assumed_as_a_whole_says_so(tmp_path: Path) -> None:
