@@ -66,7 +66,7 @@ def wet(velocity_mm_s: float, force_n: float, curve: Friction) -> tuple[float, f
     by_force = curve.wet_7 * force_n + curve.wet_4
     shape = curve.wet_1 * (rise - fall) + curve.wet_4 * step - curve.wet_6 * velocity_mm_s
     slope = curve.wet_1 * (rise_slope - fall_slope) + curve.wet_4 * step_slope - curve.wet_6
-    if by_force * shape <= 0.0:
+    if by_force <= 0.0 or shape <= 0.0:  # two negative factors would rub again
         return 0.0, 0.0
     return by_force * shape, by_force * slope
 

@@ -192,8 +192,8 @@ def friction_coefficient(velocity_mm_s: float, wetness: float, force_n: float, c
     dry = c.dry_1 * tanh(c.dry_2 * v) + c.dry_3 * tanh(c.dry_4 * v)
     tacky = c.tacky_1 * tanh(c.tacky_2 * v) + c.tacky_3 * (tanh(c.tacky_2 * v) - tanh(c.tacky_4 * v))
     stribeck = c.wet_1 * (tanh(c.wet_2 * v) - tanh(c.wet_3 * v))
-    wet = (c.wet_7 * force_n + c.wet_4) * (stribeck + c.wet_4 * tanh(c.wet_5 * v) - c.wet_6 * v)
-    return float(np.interp(wetness, [0.0, 0.5, 1.0], [dry, tacky, max(0.0, wet)]))
+    by_force, shape = c.wet_7 * force_n + c.wet_4, stribeck + c.wet_4 * tanh(c.wet_5 * v) - c.wet_6 * v
+    return float(np.interp(wetness, [0.0, 0.5, 1.0], [dry, tacky, max(0.0, by_force) * max(0.0, shape)]))
 
 
 @dataclass(frozen=True)

@@ -66,6 +66,9 @@ def test_beyond_the_limit_the_coefficient_stays_and_nothing_is_ever_negative() -
     endless = CURVE._replace(velocity_limit_mm_s=math.inf)
     assert coefficient(1e5, 1.0, 7.6, endless) == (0.0, 0.0)
     assert coefficient(1e5, 0.75, 7.6, endless)[0] == pytest.approx(0.5 * CURVE.tacky_1)
+    # a blade pressed so hard that a negative mu_wet_7 takes all friction does not rub again beyond the data
+    weakened = endless._replace(wet_7=-0.1)
+    assert [coefficient(velocity, 1.0, 20.0, weakened) for velocity in (100.0, 1e5)] == [(0.0, 0.0), (0.0, 0.0)]
 
 
 def test_a_tacky_screen_rubs_most_and_a_wet_one_least() -> None:
