@@ -5,18 +5,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from typer.testing import CliRunner
 
-from hilplant.bench import load_bench
+from hilplant.bench import Bench, load_bench
 from hilplant.cli import app
 from hilplant.failure import Failure
 from hilplant.models.tables import GRAVITY, POINTS
+from hilplant.resources import shipped
 from hilplant.studies.crank_torque import WETNESS, Conditions, crank_torque
 from hilplant.studies.mechanics_command import solver_study
 from hilplant.studies.mechanics_plots import plot_conditions, plot_torque
 from hilplant.studies.thesis_checks import Check, thesis_checks
 from hilplant.studies.whole_system import five_wipes, shape_difference
-from hilplant.studies.wiping import demands, wiping
+from hilplant.studies.wiping import INDEPENDENT, demands, wiping
 from hilplant.units import TURN_RAD
 
 BENCH = load_bench("default")
@@ -93,6 +95,34 @@ def test_the_wiper_is_faster_on_more_volts_on_wet_glass_and_on_the_fast_brush() 
 def test_a_wiper_that_stands_makes_no_cycles(tmp_path: Path) -> None:
     rows = wiping(BENCH, (1.0,))
     assert [row.cycles_per_minute for row in rows if row.screen == "dry"] == [0.0, 0.0]
+
+
+def test_gravity_and_masses_explain_what_an_integration_without_them_gives(tmp_path: Path) -> None:
+    """Without gravity the default bench comes half-way to it; with weightless arms and blades it lies beyond."""
+    level, weightless = _level_bench(tmp_path, "level", None), _level_bench(tmp_path, "weightless", 0.0)
+    for stage, independent in INDEPENDENT.items():
+        default, level_cycles, most = (_wet_cycles(bench, stage) for bench in (BENCH, level, weightless))
+        print(f"\n{stage}: {default:.2f}, level {level_cycles:.2f}, weightless {most:.2f}; {independent}", end="")
+        assert default < level_cycles < independent < most
+
+
+def _wet_cycles(bench: Bench, stage: str) -> float:
+    (row,) = [row for row in wiping(bench, (13.5,)) if (row.screen, row.stage) == ("wet", stage)]
+    return row.cycles_per_minute
+
+
+def _level_bench(folder: Path, name: str, mass_kg: float | None) -> Bench:
+    """Return the default bench on a screen that lies flat, with arms and blades of this mass if it is given."""
+    screen, linkage = (yaml.safe_load(shipped("config", *path).read_text()) for path in
+                       (("screens", "table_5_9.yaml"), ("linkages", "rhd_slave_driven.yaml")))  # fmt: skip
+    screen["angle_rad"] = 1.5707
+    for part in ("left_arm", "right_arm", "left_blade", "right_blade"):
+        linkage[part] |= {} if mass_kg is None else {"mass_kg": mass_kg}
+    for key, content in (("screen", screen), ("linkage", linkage)):
+        (folder / f"{name}_{key}.yaml").write_text(yaml.safe_dump(content))
+    plant = f"plant: {{screen: {name}_screen.yaml, linkage: {name}_linkage.yaml}}"
+    (folder / f"{name}.yaml").write_text(f"extends: default.yaml\nname: {name}\n{plant}\n")
+    return load_bench(folder / f"{name}.yaml")
 
 
 def test_a_load_without_friction_has_no_shape_to_compare() -> None:
