@@ -48,7 +48,9 @@ def plot_positions(
         axes.set_xlabel("x [cm]")
     for axes in panels[:, 0]:
         axes.set_ylabel("y [cm]")
-    figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False)
+    lines, labels = panels[0, 0].get_legend_handles_labels()
+    once = dict(zip(labels, lines, strict=True))  # all links but the crank look alike
+    figure.legend(once.values(), once.keys(), loc="outside lower center", ncols=len(once), frameon=False)
     figure.suptitle(title)
     try:
         figure.savefig(out_png, dpi=110)
@@ -81,7 +83,7 @@ def _linkage(axes: Any, wiper: Wiper, coordinates: Floats) -> None:
         joints = np.array([wiper.mechanism.point(coordinates, pin) for pin in _pins(wiper, body.name)]) * _CM
         ends = [wiper.mechanism.point(coordinates, pin) * _CM for pin in (body.first_end, body.second_end)]
         driven = body.name == wiper.mechanism.driven
-        color, label, height = (_RED, "crank", 7) if driven else (_BLACK, None, 4)
+        color, label, height = (_RED, "crank", 7) if driven else (_BLACK, "other links", 4)
         axes.plot(*np.array(ends).T, color=color, linewidth=3.5 if driven else 2.0, label=label, zorder=height)
         axes.plot(*joints.T, "o", color="white", markeredgecolor=color, markersize=4, zorder=height + 1)
     fixed = np.array([wiper.mechanism.point(coordinates, pin) for pin in _pins(wiper, "ground")]) * _CM
@@ -104,7 +106,8 @@ def _arm_and_blade(axes: Any, wiper: Wiper, side: Side, look: tuple[Floats, str]
     if side.tips:
         blade = [side.tips[0], side.centre, side.tips[1]]
         places = np.array([wiper.mechanism.point(coordinates, pin) for pin in blade]) * _CM
-        axes.plot(*places.T, color=color, linewidth=4.5, alpha=0.75, solid_capstyle="round", zorder=6)
+        look_of_blade = {"color": color, "linewidth": 4.5, "alpha": 0.75, "solid_capstyle": "round", "zorder": 6}
+        axes.plot(*places.T, **look_of_blade, label=f"{side.name} blade")
 
 
 def _area(axes: Any, wiper: Wiper, turn: Motion) -> None:
