@@ -75,7 +75,7 @@ static inline Coefficient wet(double velocity, double force, const double *c)
     const double by_force = c[6] * force + c[3];
     const double shape = c[0] * (rise.mu - fall.mu) + c[3] * step.mu - c[5] * velocity;
     const double slope = c[0] * (rise.slope - fall.slope) + c[3] * step.slope - c[5];
-    if (by_force * shape <= 0.0) return (Coefficient){0.0, 0.0};
+    if (by_force <= 0.0 || shape <= 0.0) return (Coefficient){0.0, 0.0};
     return (Coefficient){by_force * shape, by_force * slope};
 }
 
