@@ -83,7 +83,7 @@ def _troubles() -> list[Transition]:
         Transition(WIPING, when.UNKNOWN, Phase.BLIND, Fault.PARK_UNKNOWN),
         *(Transition(WIPING, condition, Phase.RETRY, fault, failed=True) for condition, fault in failures),
         Transition(RESTING, when.WANTED_OR_AWAY, Phase.BROWN_OUT, Fault.BROWN_OUT),
-        Transition(RESTING, when.UNKNOWN & when.DEMAND, Phase.BLIND, Fault.PARK_UNKNOWN),
+        Transition(RESTING, when.UNKNOWN & when.WANTED_OR_RESTED, Phase.BLIND, Fault.PARK_UNKNOWN),
         Transition(RESTING, when.AWAY & when.TRIED_OUT, Phase.LOCKOUT, Fault.OFF_PARK),
         Transition(RESTING, when.AWAY, Phase.WAIT, Fault.OFF_PARK, failed=True),
     ]

@@ -41,7 +41,11 @@ FLICK = Condition("flick", lambda view: view.stalk.flick)
 NO_FLICK = Condition("flick released", lambda view: not view.stalk.flick)
 WASH = Condition("wash", lambda view: view.stalk.wash)
 NO_WASH = Condition("wash released", lambda view: not view.stalk.wash)
-DEMAND = Condition("wanted", lambda view: view.stalk.demands)
+WANTED_OR_RESTED = Condition(
+    "(wanted or at rest for long)",
+    lambda view: view.stalk.demands
+    or (view.in_phase_s >= view.settings.settle_s and not view.settings.rests_open),
+)
 
 PARK = Condition("park reached", lambda view: view.senses.arrived)
 LAST_WIPE = Condition("last", lambda view: view.wipes_left <= 1)

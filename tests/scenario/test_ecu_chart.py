@@ -106,6 +106,8 @@ def cases():
         wanted = "slow" if name == "off" else held
         yield name, words, f"closed {wanted} .005 low", "brown_out", "brown_out"
         yield name, words, f"unknown {wanted} .005", "blind", "park_unknown"
+        if name == "off":
+            yield name, words, "unknown off .6", "blind", "park_unknown"
         yield name, words, f"open {held} .03", "wait", "off_park"
         begin = words if name == "off" else f"closed {held} .05; " + WIPE.format(s=held)
         missed = "; ".join([f"open {held} .03; {WIPE.format(s='off')}; closed {held} .005; {WIPE.format(s=held)}"] * 3)

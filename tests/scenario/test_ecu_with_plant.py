@@ -222,6 +222,22 @@ def test_a_wiper_found_on_the_screen_at_power_on_is_parked(tmp_path):
     assert 0.5 < car.turns < 0.8
 
 
+def test_a_wiper_that_coasts_out_of_the_window_while_the_switch_falls_silent_is_reported_and_parked(tmp_path):
+    bench = tmp_path / "bench.yaml"
+    switch = "{park_angle_deg: 0, window_deg: 4.5, hysteresis_deg: 0.5, bounce_ms: 0}"
+    bench.write_text(f"extends: polynomial.yaml\nname: narrow\nplant:\n  park_switch: {switch}\n")
+    car = ClosedLoop(load_bench(bench), delay_ticks=5)
+    drive_until(car, 1.5, FAST)
+    while car.relays.on:
+        car.step(OFF)
+    car.park_known = False
+    car.drive(1.0, OFF)
+    assert car["park_contact"] < 0.5, "it has coasted out"
+    assert car.fault is Fault.PARK_UNKNOWN
+    car.park_known = True
+    park(car)
+
+
 @pytest.mark.parametrize("bounce_ms", [2, 5, 10])
 def test_a_contact_that_bounces_within_reason_is_no_fault(tmp_path, bounce_ms):
     bench = tmp_path / "bench.yaml"

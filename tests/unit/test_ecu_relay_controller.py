@@ -20,7 +20,8 @@ DRIVE = Relays(on=True, fast=False)
 class Bench:
     """Plays inputs to a controller and keeps its answers."""
 
-    def __init__(self) -> None:
+    def __init__(self, settings: Settings = SETTINGS) -> None:
+        self.settings = settings
         self.state, self.relays, self.fault, self.now_s = State(), RELAYS_OFF, Fault.NONE, 0.0
 
     def play(self, seconds: float, stalk: Stalk, contact: bool | None, current_a=math.nan, supply_v=math.nan) -> Relays:
@@ -28,7 +29,7 @@ class Bench:
         for _ in range(max(1, round(seconds / POLL_S))):
             self.now_s += POLL_S
             inputs = Inputs(stalk, contact, current_a, supply_v)
-            self.state, self.relays, self.fault = advance(self.state, inputs, self.now_s, SETTINGS)
+            self.state, self.relays, self.fault = advance(self.state, inputs, self.now_s, self.settings)
         return self.relays
 
     def until(self, condition, *inputs) -> float:
@@ -57,11 +58,26 @@ def test_the_benchs_defaults_are_the_controllers():
     assert controller_settings(ControllerSettings()) == Settings()
 
 
-@pytest.mark.parametrize("contact", [True, None])
-def test_it_begins_off_and_stays_off(bench, contact):
-    assert bench.play(30.0, OFF, contact) == RELAYS_OFF
+def test_it_begins_off_and_stays_off(bench):
+    assert bench.play(30.0, OFF, True) == RELAYS_OFF
     assert bench.state.phase is Phase.OFF
     assert bench.fault is Fault.NONE
+
+
+def test_a_park_switch_that_is_silent_at_rest_is_reported_after_a_while_and_nothing_is_driven(bench):
+    assert bench.play(0.49, OFF, None) == RELAYS_OFF
+    assert bench.fault is Fault.NONE, "the first frame may still come"
+    assert bench.play(30.0, OFF, None) == RELAYS_OFF
+    assert bench.fault is Fault.PARK_UNKNOWN
+    assert bench.play(0.6, OFF, True) == RELAYS_OFF
+    assert bench.fault is Fault.NONE
+
+
+def test_where_the_wiper_rests_with_an_open_contact_silence_at_rest_moves_nothing():
+    seat = Bench(Settings(rests_open=True))
+    seat.play(1.0, OFF, None)
+    assert seat.play(5.0, OFF, False) == RELAYS_OFF
+    assert seat.fault is Fault.NONE
 
 
 def test_off_while_the_wiper_is_still_in_the_park_window_makes_one_whole_turn(bench):
