@@ -13,7 +13,7 @@ from hilplant.bus.transport import open_transport
 from hilplant.ecu.node import EcuNode, Report, run_ecu
 from hilplant.ecu.settings import controller_settings
 from hilplant.ecu.stalk import StalkSource, TypedStalk, parse_stalk, stalk_at, stalk_words
-from hilplant.ecu.vocabulary import Fault
+from hilplant.ecu.vocabulary import Fault, Stalk
 from hilplant.runtime.clock import WallClock
 from hilplant.runtime.server import StopRequest, ended_by_signals
 from hilplant.signals import STATUS
@@ -51,13 +51,20 @@ def _source(text: str | None) -> StalkSource:
     if text is not None:
         turns = parse_stalk(text)
         return lambda elapsed_s: stalk_at(turns, elapsed_s)
+    if sys.stdin is None:  # closed, as some that start daemons leave it
+        return _untouched
     descriptor = sys.stdin.fileno()
     if os.isatty(descriptor):
         typer.echo("type off, slow, fast, intermittent (a first letter will do), i1 to i6, flick or wash; Ctrl-C ends")
         if os.tcgetpgrp(descriptor) != os.getpgrp():  # in the background, reading would stop this program
             typer.echo("in the background: the stalk comes from the bus, or with --stalk", err=True)
-            return lambda elapsed_s: stalk_at((), elapsed_s)
+            return _untouched
     return TypedStalk(descriptor, typer.echo)
+
+
+def _untouched(elapsed_s: float) -> Stalk:
+    """Return the stalk where it is without a hand: off."""
+    return stalk_at((), elapsed_s)
 
 
 def _teller() -> Callable[[Report], None]:

@@ -114,14 +114,17 @@ class TypedStalk:
         self._answer = answer
         self._stalk = Stalk()
         self._presses: dict[str, float] = {}
-        self._open = True
+        self._open, self._begun = True, ""
 
     def __call__(self, elapsed_s: float) -> Stalk:
         """Read a line if one is there, without waiting."""
         if self._open and select.select([self._descriptor], [], [], 0.0)[0]:
             typed = os.read(self._descriptor, 4096)
             self._open = bool(typed)  # end of file: the position stays
-            for line in typed.decode(errors="replace").splitlines():
+            *lines, self._begun = (self._begun + typed.decode(errors="replace")).split("\n")
+            if self._begun and not self._open:
+                lines.append(self._begun)
+            for line in lines:
                 self._take(line, elapsed_s)
         pressed = {word for word, at_s in self._presses.items() if elapsed_s - at_s < PRESSES_S[word]}
         return self._stalk._replace(flick="flick" in pressed, wash="wash" in pressed)

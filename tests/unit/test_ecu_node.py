@@ -1,5 +1,7 @@
 """The ECU on a bus that the test holds in its hands: what it sends when, and what silence does to it."""
 
+import sys
+
 import cantools
 import pytest
 
@@ -275,3 +277,11 @@ def test_a_written_stalk_goes_before_the_one_on_the_bus(monkeypatch, stalk, hear
     monkeypatch.setattr(command, "_source", lambda _: None)
     command.ecu_command("virtual", 1.0, stalk)
     assert len(sides[0].stalk) == heard
+
+
+def test_without_a_standard_input_the_stalk_stays_off(monkeypatch):
+    stalks: list[Stalk] = []
+    monkeypatch.setattr(command, "run_ecu", lambda _, source, *rest, pause_ns: stalks.append(source(3.0)))
+    monkeypatch.setattr(sys, "stdin", None)
+    assert command.ecu_command("virtual", 1.0, None) == 0
+    assert stalks == [Stalk()]

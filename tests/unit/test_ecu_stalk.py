@@ -90,6 +90,21 @@ def test_typed_lines_move_the_stalk_and_nonsense_is_answered_without_moving_it()
     assert answers[1].startswith("stalk: type one of off, ")
 
 
+def test_a_line_that_comes_in_pieces_counts_when_it_is_whole_and_the_last_at_the_end_of_the_file():
+    reader, writer = os.pipe()
+    answers: list[str] = []
+    stalk = TypedStalk(reader, answers.append)
+    seen = []
+    for piece in (b"slo", b"w\nfa", b"st"):
+        os.write(writer, piece)
+        seen.append(stalk(0.0))
+    os.close(writer)
+    assert [*seen, stalk(1.0)] == [Stalk(), Stalk(Master.SLOW), Stalk(Master.SLOW), Stalk(Master.FAST)]
+    assert stalk(2.0) == Stalk(Master.FAST)
+    os.close(reader)
+    assert answers == ["stalk: slow", "stalk: fast"]
+
+
 @pytest.mark.parametrize("stalk", [Stalk(), Stalk(Master.FAST), Stalk(Master.INTERMITTENT, 6)])
 def test_the_words_for_a_stalk_are_words_for_a_move_there(stalk):
     move = move_named(stalk_words(stalk).replace(" ", ""))
