@@ -84,10 +84,12 @@ def plot_estimates(path: Path, time_s: Floats, speed_rad_s: Floats, estimates: M
     """Draw the true speed, what each estimator says, and the errors; as Figures 7-16 and 7-17."""
     figure, (top, bottom) = _figure(2, 5.5)
     top.plot(time_s[::5], speed_rad_s[::5], color="black", linewidth=0.9, label="true")
-    for colour, (name, values) in zip(_COLOURS, estimates.items(), strict=False):
-        top.plot(time_s[::5], values[::5], color=colour, linewidth=0.7, label=name)
-        bottom.plot(time_s[::5], (values - speed_rad_s)[::5], color=colour, linewidth=0.7)
-    top.legend(frameon=False, fontsize=8, ncols=4)
+    widths = (2.2, 0.9, 0.7)  # network and observer lie upon each other
+    for colour, width, (name, values) in zip(_COLOURS, widths, estimates.items(), strict=False):
+        top.plot(time_s[::5], values[::5], color=colour, linewidth=width, label=name)
+        bottom.plot(time_s[::5], (values - speed_rad_s)[::5], color=colour, linewidth=width)
+    top.legend(loc="upper center", frameon=False, fontsize=8, ncols=4)
+    top.margins(y=0.18)
     top.set_ylabel("crank speed [rad/s]")
     bottom.set_ylabel("error [rad/s]")
     bottom.set_ylim(-1.0, 1.0)
@@ -106,7 +108,9 @@ def plot_stages(path: Path, run: Run) -> None:
     ):  # fmt: skip
         axes.plot(run.time_s, run[column], color=_COLOURS[0], linewidth=0.9)
         axes.set_ylabel(label)
+    panels[0].legend(["reference", "cascade"], loc="lower center", ncols=2, frameon=False, fontsize=8)
     panels[1].axhline(18.0, color=_GREY, linestyle=":")
+    panels[2].set_yticks([0, 1], ["no", "yes"])
     panels[-1].set_xlabel("time [s]")
     figure.suptitle("Continuous speed: slow brush, fast above 18 V and back (section 7.6)")
     _save(figure, path)

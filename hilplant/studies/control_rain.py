@@ -120,7 +120,7 @@ def _duty(bench: Bench, needs: Floats, piece: Piece, efficiency: float) -> Duty:
         piece(state, rows, float(need), outputs)
         names = ("terminal_v", "current_a", "crank_speed_rad_s")
         voltage, current, speed = (outputs[:, OUTPUT_INDEX[name]] for name in names)
-        # the relays and the converter feed nothing back into the battery
+        # what the armature returns when it brakes, below 0.002 Wh, is taken for lost
         energy = np.maximum(voltage * current, 0.0).sum()
         missed = (speed.mean() * 60.0 / TURN_RAD < 0.95 * need) * len(speed)
         sums += [energy / efficiency, (current**2).sum(), speed.sum(), missed]

@@ -123,7 +123,7 @@ def draw(study: Study, bench: Bench, folder: Path) -> list[str]:
     figures = {"hebb": ("7-6", "7-12"), "error_hebb": ("7-7", "7-13"), "quadratic": ("7-8", "7-14")}
     for rule, (fixed, fuzzy) in figures.items():
         of_rule = [row for row in ROWS if row.rule == rule]
-        title = rule.replace("_", "-")
+        title = rule.replace("_", "-").title()
         names = [row.name for row in of_rule if not row.fuzzy]
         groups.append((rule, f"Single neuron, {title} rule, fixed K (compare Figure {fixed})", names))
         names = [row.name for row in of_rule if row.fuzzy]

@@ -112,7 +112,7 @@ def metrics(run: Run, settling_s: float = SETTLING_S) -> Metrics:
 
     The rise time is the source's, from zero to the first tick at the reference (infinite if it is never met). Of
     the errors `low` is how far the speed falls below the reference, `high` how far above. The source calls the
-    columns "Low(-)" and "High"; read the other way round, our state 5 would be off by more than a factor of three.
+    columns "Low(-)" and "High" and does not say of which difference; its figures fit both readings about as well.
     """
     speed, error = run["crank_speed_rad_s"], run["crank_speed_rad_s"] - run.reference_rad_s
     above = np.flatnonzero(error >= 0.0)

@@ -1,23 +1,19 @@
-"""Observer, network, closed loop against other methods: an ODE solver, numpy, and an independent rebuild's figures."""
+"""Observer and network against other methods: an ODE solver and numpy."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.interpolate import CubicHermiteSpline
 
 from hilplant.bench import load_bench
-from hilplant.control.catalogue import BLIND_NOISE, THESIS_PID, controller_named, pid
+from hilplant.control.catalogue import BLIND_NOISE
 from hilplant.control.closed_loop import observe_rows
 from hilplant.control.design import Noise, armature, model
 from hilplant.control.network import network_speed
 from hilplant.control.observer import correct, learn_resistance, predict
 from hilplant.control.records import AT_REST, Estimate, Measured
-from hilplant.models.tables import GRAVITY, INERTIA, POINTS
 from hilplant.studies.control_network import train, training_record
-from hilplant.studies.control_test import metrics, run_drive, thesis_drive
 from hilplant.units import TURN_RAD
 
 BENCH = load_bench("default")
@@ -112,59 +108,3 @@ def test_the_network_in_the_loop_is_the_one_that_was_trained_and_it_has_learned(
     assert ours == pytest.approx(path[2, 0] + path[2, 1] * by_numpy, abs=1e-12)
     assert np.sqrt(np.mean((ours - data.speed_rad_s[::40]) ** 2)) < 0.1
     assert np.array_equal(train(data, 2), train(data, 2))
-
-
-def friction_torque(angle: float, speed: float, wet: bool) -> float:
-    """Friction of both blades at the crank by (4.49), (4.50), Table 5-9, straight from the paper."""
-    total = 0.0
-    for channel in (POINTS, POINTS + 1):
-        knots = np.linspace(0.0, TURN_RAD, len(BENCH.tables))
-        way = float(np.interp(angle % TURN_RAD, knots, BENCH.tables[:, channel, 0]))
-        v = min(abs(way * speed) * 1000.0, 1000.0)
-        if wet:
-            bracket = 0.4454 * (math.tanh(4.454 * v) - math.tanh(0.007578 * v)) + 0.6756 * math.tanh(6.756 * v)
-            mu = (0.003456 * 7.615 + 0.6756) * (bracket - 2.795e-4 * v)
-        else:
-            mu = 0.3186 * math.tanh(0.1238 * v) + 1.996 * math.tanh(19.96 * v)
-        total += abs(way) * 7.615 * max(0.0, mu)
-    return total
-
-
-def test_the_closed_loop_is_the_same_by_an_adaptive_solver():
-    """PID in plain Python, the wiper as an ordinary differential equation, for the first half second."""
-    knots = np.linspace(0.0, TURN_RAD, len(BENCH.tables))
-    inertia, gravity = (CubicHermiteSpline(knots, *BENCH.tables[:, c].T) for c in (INERTIA, GRAVITY))
-    brush, ratio, slope, own = MOTOR.slow, MOTOR.gear_ratio, inertia.derivative(), MOTOR.inertia_kg_m2
-
-    def rates(_, x, voltage):
-        i, w, angle = x
-        speed, at = w / ratio, angle % TURN_RAD
-        load = 0.5 * slope(at) * speed**2 + gravity(at) + friction_torque(angle, max(speed, 1e-9), True)
-        free = brush.constant_v_s * i - MOTOR.damping_n_m_s * w
-        driving = inertia(at) * free / ratio + load * own >= 0.0
-        rise = (free - load / ratio) / (own + inertia(at) / ratio**2) if driving else free / own
-        if w <= 0.0:
-            rise = max(rise, 0.0)
-        return [(voltage - brush.resistance_ohm * i - brush.constant_v_s * w) / brush.inductance_henry, rise, w / ratio]
-
-    state, integral, speeds = np.array([0.0, 0.0, 0.65]), 0.0, []
-    for _ in range(500):
-        speeds.append(state[1] / ratio)
-        error = math.pi - speeds[-1]
-        integral += 35.452 * error * 0.001
-        voltage = min(max(0.00177 * error + integral, 0.0), 20.0)
-        state = solve_ivp(rates, (0.0, 0.001), state, args=(voltage,), method="RK23", rtol=1e-5, atol=1e-7).y[:, -1]
-    ours = run_drive(BENCH, pid(MOTOR, PERIOD_S, THESIS_PID), thesis_drive(BENCH))["crank_speed_rad_s"][:500]
-    assert np.abs(ours - speeds).max() < 0.01
-
-
-def test_pid_without_gravity_comes_to_the_figures_of_an_independent_rebuild():
-    """Rise 0.69 s from park; errors 0.14/0.14, 0.44/0.82, 0.50/0.59, 0.20/0.22, 0.10/0.08 below/above."""
-    tables = BENCH.tables.copy()
-    tables[:, GRAVITY] = 0.0
-    bench = replace(BENCH, tables=tables)
-    run = run_drive(bench, controller_named("pid", MOTOR, PERIOD_S), thesis_drive(bench, 0.0))
-    found = metrics(run, settling_s=1.0)
-    assert found.rise_s == pytest.approx(0.69, abs=0.01)
-    assert found.low == pytest.approx((0.14, 0.44, 0.50, 0.20, 0.10), abs=0.02)
-    assert found.high == pytest.approx((0.14, 0.82, 0.59, 0.22, 0.08), abs=0.025)
