@@ -45,9 +45,15 @@ def _teller() -> Callable[[Report], None]:
         told = (int(report.time_s), report.lost)
         if told != last[0]:
             last[0] = told
-            brush = "fast" if report.command.fast > 0.5 else "slow"
-            state = "no word from the plant" if report.lost else f"speed {report.measured.speed_rad_s:6.3f} rad/s"
-            wanted, voltage = report.reference_rad_s, report.command.voltage_v
-            typer.echo(f"{report.time_s:8.3f} s  wanted {wanted:6.3f} rad/s, {state}, {voltage:6.3f} V, {brush} brush")
+            typer.echo(_line(report))
 
     return tell
+
+
+def _line(report: Report) -> str:
+    speed, brush = report.measured.speed_rad_s, "fast" if report.command.fast > 0.5 else "slow"
+    state = "no frame in this period" if math.isnan(speed) else f"speed {speed:6.3f} rad/s"
+    if report.lost:
+        state = "no word from the plant"
+    wanted, voltage = report.reference_rad_s, report.command.voltage_v
+    return f"{report.time_s:8.3f} s  wanted {wanted:6.3f} rad/s, {state}, {voltage:6.3f} V, {brush} brush"
