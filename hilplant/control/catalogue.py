@@ -37,7 +37,7 @@ SEARCHED: dict[tuple[str, str], tuple[float, ...]] = {
 }
 
 #: The cascade's bandwidths [1/s]. The quickest that overshoots by less than 0.3 rad/s from every crank angle.
-CASCADE = Cascade(speed_rate=250.0, current_rate=700.0)
+CASCADE = Cascade(speed_rate=250.0, current_rate=710.0)
 
 #: Up to this period [s] the cascade has these bandwidths; beyond it the speed has this part of the period's rate.
 FINE_PERIOD_S, BUS_PACE = 0.001, 0.15

@@ -75,7 +75,7 @@ def test_the_cascade_beats_all_of_the_source_s(study):
 def test_the_cascade_keeps_its_promise_from_every_crank_angle():
     bench = load_bench("default")
     controller = controller_named("cascade", bench.parameters.motor, 0.001)
-    for start_rad in np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False):
+    for start_rad in np.radians(np.arange(0.0, 360.0, 2.5)):
         found = metrics(run_drive(bench, controller, thesis_drive(bench, start_rad)))
         assert found.rise_s < 0.1, start_rad
         assert found.overshoot_rad_s < 0.3, start_rad
