@@ -14,6 +14,9 @@ Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
 Name = Annotated[str, Field(min_length=1)]
 
+#: Of a longer value a message shows the beginning.
+_LONGEST_SHOWN = 60
+
 _WORDING = {
     "float_type": "must be a number",
     "int_type": "must be a whole number",
@@ -112,7 +115,8 @@ def _shown(value: Any) -> str:
         return "a group of keys" if isinstance(value, dict) else "a list"
     if value is None or isinstance(value, bool):
         return {True: "true", False: "false", None: "nothing"}[value]
-    return repr(value)
+    text = repr(value)
+    return text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
 
 
 def _existing(document: Document, location: Location, steps: tuple[str | int, ...]) -> Location:

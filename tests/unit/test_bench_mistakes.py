@@ -38,6 +38,7 @@ def test_a_bench_that_only_extends_the_default_one_is_sound(tmp_path: Path) -> N
         ("inital: {}", "3: unknown key 'inital', did you mean 'initial'?"),
         ("plant: 3", "3: plant must be a group of keys, not 3"),
         ("plant: {load: none}", "3: load must be a group of keys, not 'none'"),
+        (f"plant: {'x' * 99}", f"3: plant must be a group of keys, not '{'x' * 59}..."),
         ("plant: {load: {c1: 1}}", "3: load: key 'model' is missing"),
         ("plant: {load: {model: none, c1: 1}}", "3: unknown key 'c1'; known: model"),
         ("plant: {motor: motors/no.yaml}", "3: no file 'motors/no.yaml'; looked in "),
