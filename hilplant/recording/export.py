@@ -11,7 +11,8 @@ from hilplant.recording import frame_logs
 from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, STATUS_COLUMNS
 from hilplant.recording.mf4_frames import append_frames
 from hilplant.recording.reader import Recording, read_recording
-from hilplant.recording.tables import TableError, check_ending, write_table
+from hilplant.recording.tables import TableError, check_ending, fill_table
+from hilplant.recording.whole_file import whole_file
 from hilplant.signals import INPUTS, OUTPUTS, STATUS
 from hilplant.units import SECOND_NS
 
@@ -21,7 +22,7 @@ TABLE_ENDINGS = (".mf4", ".csv", ".parquet")
 def export(path: str | PathLike[str], out: str | PathLike[str]) -> str:
     """Write the recording `path` to `out` by its ending, and return one line that says what was written.
 
-    .csv and .parquet hold every signal by tick, .blf and .asc every frame, .mf4 both.
+    .csv and .parquet hold every signal by tick, .blf and .asc every frame, .mf4 both. A failure leaves no half file.
 
     Raises
     ------
@@ -39,7 +40,8 @@ def export(path: str | PathLike[str], out: str | PathLike[str]) -> str:
         if ending in TABLE_ENDINGS:
             check_ending(out)
         recording = read_recording(path)
-        written = _write(recording, out, ending)
+        with whole_file(out) as passing:
+            written = _write(recording, passing, ending)
     except TableError as error:
         raise Failure(str(error)) from error
     except OSError as error:
@@ -53,7 +55,7 @@ def _write(recording: Recording, out: Path, ending: str) -> str:
     columns, units = signal_columns(recording)
     if ending == ".mf4":  # one clock for signals and frames, also where periods were lost
         columns = {"deadline_s": columns.pop("deadline_s"), **columns}
-    write_table(out, columns, units)
+    fill_table(out, columns, units)
     ticks = f"{len(columns['time_s'])} ticks of {len(columns) - 1} signals"
     return f"{ticks}, {append_frames(recording, out)} frames" if ending == ".mf4" else ticks
 

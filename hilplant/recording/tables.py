@@ -9,6 +9,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from hilplant.failure import Failure
+from hilplant.recording.whole_file import whole_file
 
 Columns = Mapping[str, NDArray[np.float64]]
 
@@ -20,7 +21,8 @@ class TableError(Failure):
 def write_table(path: str | Path, columns: Columns, units: Mapping[str, str]) -> None:
     """Write columns of equal length, the first of which is the time [s]; `units` by column, "" for none.
 
-    Numbers keep every digit: what is read back is bit for bit what was written.
+    The file is written whole or not at all. Numbers keep every digit: what is read back is bit for bit what was
+    written.
 
     Raises
     ------
@@ -30,9 +32,15 @@ def write_table(path: str | Path, columns: Columns, units: Mapping[str, str]) ->
     """
     check_ending(path)
     try:
-        _WRITERS[Path(path).suffix.lower()](Path(path), columns, units)
+        with whole_file(Path(path)) as passing:
+            fill_table(passing, columns, units)
     except OSError as error:
-        raise TableError(f"{path} cannot be written: {(error.strerror or str(error)).lower()}") from error
+        raise TableError(f"{path}: cannot be written: {error.strerror or error}") from error
+
+
+def fill_table(path: Path, columns: Columns, units: Mapping[str, str]) -> None:
+    """Write columns as `write_table` does, in place; a failure is an OSError and leaves half a file."""
+    _WRITERS[path.suffix.lower()](path, columns, units)
 
 
 def check_ending(path: str | Path) -> None:

@@ -144,6 +144,21 @@ def test_a_folder_that_is_not_there_is_one_clear_error(record_run: Record, tmp_p
         (plot_recording if ending == ".png" else export)(record_run(10), out)
 
 
+@pytest.mark.parametrize("ending", [".csv", ".parquet", ".mf4", ".blf", ".asc"])
+def test_a_damaged_recording_leaves_no_half_file_and_what_was_there_before(
+    record_run: Record, tmp_path: Path, ending: str
+) -> None:
+    path, out = record_run(), tmp_path / "out" / f"run{ending}"
+    content = bytearray(path.read_bytes())
+    content[len(content) * 3 // 4] ^= 0x55
+    path.write_bytes(content)
+    out.parent.mkdir()
+    out.write_text("of an earlier run")
+    with pytest.raises(Failure, match="damaged in block"):
+        export(path, out)
+    assert [file.read_text() for file in out.parent.iterdir()] == ["of an earlier run"]
+
+
 def test_a_plot_is_a_picture(record_run: Record, tmp_path: Path) -> None:
     out = tmp_path / "run.png"
     plot_recording(record_run(), out)
