@@ -1,7 +1,7 @@
 """A scenario file: what drives the plant over time, when nothing on a bus does."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -44,11 +44,12 @@ class _Instant(Checked):
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """From `time_s` on the signal has `value`, or is on its way there for `ramp_s`."""
+    """From `time_s` on the signal has `value`, or is on its way there for `ramp_s`; `place` is its file and line."""
 
     time_s: float
     value: float
     ramp_s: float = 0.0
+    place: str = field(default="", kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +61,17 @@ class Scenario:
     entries: dict[int, tuple[Entry, ...]]
 
     def input_rows(self, input_row: NDArray[np.float64], step_ns: int) -> NDArray[np.float64]:
-        """Return the inputs of every tick; times are rounded to ticks, unnamed inputs keep `input_row`."""
-        rows = np.tile(input_row, (round(self.seconds * SECOND_NS / step_ns), 1))
+        """Return the inputs of every tick; times are rounded to ticks, unnamed inputs keep `input_row`.
+
+        Raises
+        ------
+        Failure
+            When that is not one tick, or a ramp begins at no number.
+        """
+        ticks = round(self.seconds * SECOND_NS / step_ns)
+        if not ticks:
+            raise Failure(f"a scenario of {self.seconds:g} s is shorter than a tick of {step_ns / SECOND_NS:g} s")
+        rows = np.tile(input_row, (ticks, 1))
         for index, entries in self.entries.items():
             for entry in entries:
                 _apply(rows[:, index], entry, step_ns, INPUTS[index])
@@ -122,7 +132,7 @@ def _entries_of(reading: Reading, document: Document, signal: Signal, pairs: Seq
         if entries and instant.time <= entries[-1].time_s:
             reading.note(document, location, f"time {instant.time} s must come after {entries[-1].time_s} s")
             continue
-        entries.append(Entry(instant.time, *entry))
+        entries.append(Entry(instant.time, *entry, place="{}:{}".format(*document.place(location))))
     return tuple(entries)
 
 
@@ -158,7 +168,7 @@ def _apply(column: NDArray[np.float64], entry: Entry, step_ns: int, signal: Sign
         return
     if ticks and _is_no_quantity(signal, column[first]):
         text = f"{signal.name} is '{_SAME}' when its ramp at {entry.time_s:g} s begins; give it a value before"
-        raise Failure(text)
+        raise Failure(": ".join(part for part in (entry.place, text) if part))
     ramp = np.linspace(column[first], entry.value, ticks, endpoint=False)[: len(column) - first]
     column[first:] = entry.value
     column[first : first + len(ramp)] = ramp

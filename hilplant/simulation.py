@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bench.assembly import Bench, initial_state, load_bench
+from hilplant.failure import Failure
 from hilplant.models.plant import simulate_rows
 from hilplant.recording.tables import check_ending, write_table
 from hilplant.scenario import Scenario, load_scenario
-from hilplant.signals import INPUTS, OUTPUT_INDEX, OUTPUTS
+from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import SECOND_NS
 
 
@@ -23,15 +24,14 @@ class Result:
     outputs: NDArray[np.float64]
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
-        """Return the column of one signal of ``signals.OUTPUTS``, or `time_s`."""
-        return self.time_s if name == "time_s" else self.outputs[:, OUTPUT_INDEX[name]]
+        """Return the column of one signal of ``signals.OUTPUTS`` or ``signals.INPUTS``, or `time_s`."""
+        if name == "time_s":
+            return self.time_s
+        return self.outputs[:, OUTPUT_INDEX[name]] if name in OUTPUT_INDEX else self.inputs[:, INPUT_INDEX[name]]
 
     def columns(self) -> dict[str, NDArray[np.float64]]:
         """Return time, all outputs in their order, then those inputs that are not outputs as well."""
-        inputs = {signal.name: self.inputs[:, index] for index, signal in enumerate(INPUTS)}
-        return {name: self[name] for name in ("time_s", *OUTPUT_INDEX)} | {
-            name: column for name, column in inputs.items() if name not in OUTPUT_INDEX
-        }
+        return {name: self[name] for name in dict.fromkeys(("time_s", *OUTPUT_INDEX, *INPUT_INDEX))}
 
     def write(self, path: str | Path) -> None:
         """Write all columns as .csv, .parquet or .mf4, by the ending of `path`."""
@@ -63,10 +63,13 @@ def simulate_to_file(bench: str | Path, scenario: str | Path, out: str | Path) -
     Raises
     ------
     Failure
-        BenchError for mistakes in either file, TableError when `out` cannot be written.
+        BenchError for mistakes in either file, TableError when `out` cannot be written; when memory runs out.
 
     """
     check_ending(out)
-    result = simulate(bench, scenario)
-    result.write(out)
+    try:
+        result = simulate(bench, scenario)
+        result.write(out)
+    except MemoryError as error:
+        raise Failure(f"{scenario}: its length does not fit into memory, at some 300 bytes a tick") from error
     return f"{out}: {len(result.time_s)} rows, {len(result.columns())} columns"

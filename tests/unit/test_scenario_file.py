@@ -82,7 +82,8 @@ def test_a_number_with_names_goes_by_name_or_number_and_follows_a_ramp(tmp_path:
 def test_no_ramp_begins_where_a_signal_takes_the_value_of_another(tmp_path: Path) -> None:
     text = "seconds: 1\nsignals:\n  left_screen: [[0.5, {ramp_to: wet, seconds: 0.1}]]\n"
     scenario = written(tmp_path, text)
-    with pytest.raises(Failure, match=r"left_screen is 'same' when its ramp at 0\.5 s begins; give it a value before"):
+    said = r"scenario\.yaml:3: left_screen is 'same' when its ramp at 0\.5 s begins; give it a value before"
+    with pytest.raises(Failure, match=said):
         scenario.input_rows(DEFAULTS, STEP_NS)
     assert column(written(tmp_path, text.replace("[[0.5,", "[[0, dry], [0.5,")), "left_screen")[-1] == 1.0
 

@@ -9,6 +9,7 @@ import pytest
 from pyarrow import parquet
 
 from hilplant import Bench, BenchError, Result, load_bench, simulate
+from hilplant.failure import Failure
 from hilplant.recording import tables
 from hilplant.resources import shipped
 from hilplant.scenario import load_scenario
@@ -126,6 +127,44 @@ def test_without_its_library_an_mf4_file_is_refused_with_the_command_that_instal
         tables.check_ending(tmp_path / "out.mf4")
 
 
+def test_a_file_is_written_whole_or_stays_as_it_was(
+    wiped: Result, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def interrupted(path: Path, *_: object) -> None:
+        path.write_text("half")
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(tables._WRITERS, ".csv", interrupted)
+    out = tmp_path / "out.csv"
+    out.write_text("whole")
+    with pytest.raises(KeyboardInterrupt):
+        wiped.write(out)
+    assert [(file.name, file.read_text()) for file in tmp_path.iterdir()] == [("out.csv", "whole")]
+
+
+def test_a_file_behind_a_link_is_written_there(wiped: Result, tmp_path: Path) -> None:
+    (tmp_path / "link.csv").symlink_to(tmp_path / "real.csv")
+    wiped.write(tmp_path / "link.csv")
+    assert (tmp_path / "link.csv").is_symlink()
+    assert (tmp_path / "real.csv").stat().st_size > 0
+
+
+@pytest.mark.parametrize(("seconds", "said"), [("1e12", r"does not fit into memory"), ("1e-4", "shorter than a tick")])
+def test_a_length_that_no_run_can_have_is_refused_in_one_line(seconds: str, said: str, tmp_path: Path) -> None:
+    scenario = tmp_path / "length.yaml"
+    scenario.write_text(f"seconds: {seconds}\n")
+    with pytest.raises(Failure, match=said):
+        simulate_to_file("default", scenario, tmp_path / "out.csv")
+    assert not (tmp_path / "out.csv").exists()
+
+
+def test_inputs_and_outputs_are_found_by_their_names(wiped: Result) -> None:
+    assert wiped["screen"].tobytes() == wiped.columns()["screen"].tobytes()
+    assert wiped["supply_v"].tobytes() == wiped.columns()["supply_v"].tobytes()
+    with pytest.raises(KeyError):
+        wiped["curent_a"]
+
+
 def test_a_bench_with_mistakes_is_not_simulated(tmp_path: Path) -> None:
     path = tmp_path / "bench.yaml"
     path.write_text("extends: default.yaml\nname: x\nstep_s: -1\n")
@@ -136,5 +175,5 @@ def test_a_bench_with_mistakes_is_not_simulated(tmp_path: Path) -> None:
 def test_a_result_goes_straight_to_a_file_or_says_why_not(tmp_path: Path) -> None:
     said = simulate_to_file("default", "stall", tmp_path / "out.csv")
     assert said.endswith("out.csv: 8000 rows, 35 columns")
-    with pytest.raises(tables.TableError, match=r"no/out\.csv cannot be written: no such file or directory"):
+    with pytest.raises(tables.TableError, match=r"no/out\.csv: cannot be written: there is no folder .*no$"):
         simulate_to_file("default", "stall", tmp_path / "no" / "out.csv")
