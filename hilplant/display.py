@@ -170,9 +170,9 @@ def _on_dial(angle_rad: float, radius: float) -> Point:
 def _switches(now: Reading, scene: Scene) -> Text:
     relay_style = {"OFF": "dim", "SLOW": "bold green", "FAST": "bold yellow"}[now.relays]
     park = ("closed", "bold green") if now.outputs["park_contact"] else ("open", "dim")
-    stalk = ("stalk ", (f"{scene.stalk:<14}", "bold")) if scene.stalk else ()
+    stalk = ("stalk ", (f"{scene.stalk:<16}", "bold")) if scene.stalk else ()
     return Text.assemble(
-        *stalk, "relays ", (f"{now.relays:<7}", relay_style), "park switch ", (f"{park[0]:<9}", park[1]),
+        *stalk, "relays ", (f"{now.relays:<6}", relay_style), "park switch ", (f"{park[0]:<8}", park[1]),
         "mode ", (now.mode, _MODE_STYLES[now.mode]),
     )  # fmt: skip
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from rich.console import Console
 
 from hilplant.demo.plant import Failed, Message, Started, serve_demo
-from hilplant.demo.sequence import Sequence, sequence
+from hilplant.demo.sequence import WHOLE_S, Sequence, sequence
 from hilplant.demo.summary import summarise
 from hilplant.display import Scene, watch
 from hilplant.ecu.stalk import stalk_at, stalk_words
@@ -31,6 +31,8 @@ def run_demo(seconds: float | None, out: Path) -> int:
         "preparing the plant (the first run compiles it, which takes 10 to 20 s) ...",
         highlight=False,
     )
+    if plan.seconds < WHOLE_S:
+        console.print(f"{plan.seconds:g} s show the beginning alone; all modes take {WHOLE_S:g} s", highlight=False)
     summary = _serve_and_watch(plan, folder / RECORDING, console)
     summarise(summary, folder / RECORDING, folder / PLOT, console)
     return 0
@@ -56,6 +58,9 @@ def _serve_and_watch(plan: Sequence, path: Path, console: Console) -> Summary:
     there.close()
     try:
         return _follow(plan, child, here, console)
+    except KeyboardInterrupt:  # too early for anything to be summed up
+        path.unlink(missing_ok=True)
+        raise
     finally:
         signal.signal(signal.SIGTERM, before)
         child.join(10.0)
@@ -64,17 +69,21 @@ def _serve_and_watch(plan: Sequence, path: Path, console: Console) -> Summary:
 
 
 def _follow(plan: Sequence, child: SpawnProcess, pipe: "Connection[None, Message]", console: Console) -> Summary:
+    interrupted = False
     try:
         started = _next_message(pipe)
         if isinstance(started, Started):
             with closing(Ring.attach(started.ring)) as ring:
                 watch(ring.latest, pipe.poll, lambda time_s: _scene(plan, time_s), console)
     except KeyboardInterrupt:
+        interrupted = True
         child.terminate()
     ended = _next_message(pipe)
     while isinstance(ended, Started):
         ended = _next_message(pipe)
     if not isinstance(ended, Summary):
+        if interrupted:
+            raise KeyboardInterrupt
         raise Failure(f"demo: {ended.reason}")
     return ended
 

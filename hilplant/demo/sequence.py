@@ -6,7 +6,8 @@ from hilplant.ecu.stalk import Turn, move_named
 from hilplant.failure import Failure
 
 USUAL_S = 20.0
-SHORTEST_S = 8.0
+#: In less than `WHOLE_S` not every mode can be shown; such a demonstration is the beginning of one of that length.
+SHORTEST_S, WHOLE_S = 1.0, 8.0
 
 #: On a wet screen a slow wipe takes 1.6 s and a fast one 1.3 s: the last wipe has parked before the flick, and the
 #: flick before the end.
@@ -27,11 +28,12 @@ def sequence(seconds: float | None) -> Sequence:
     Raises
     ------
     Failure
-        When the time is too short to show them all.
+        When the time is too short to show anything.
     """
-    length_s = USUAL_S if seconds is None else seconds
-    if not SHORTEST_S <= length_s <= 86400.0:
-        raise Failure(f"demo: --seconds must be from {SHORTEST_S:g} to 86400, not {length_s:g}")
+    asked_s = USUAL_S if seconds is None else seconds
+    if not SHORTEST_S <= asked_s <= 86400.0:
+        raise Failure(f"demo: --seconds must be from {SHORTEST_S:g} to 86400, not {asked_s:g}")
+    length_s = max(WHOLE_S, asked_s)
     active_s = length_s - _FLICK_S - _PARKING_S
     turns = (
         _turn(0.0, "off"),
@@ -41,7 +43,7 @@ def sequence(seconds: float | None) -> Sequence:
         _turn(active_s, "off"),
         _turn(length_s - _FLICK_S, "flick"),
     )
-    return Sequence(length_s, turns, pause_s=min(2.0, 0.08 * active_s))
+    return Sequence(asked_s, turns, pause_s=min(2.0, 0.08 * active_s))
 
 
 def _turn(time_s: float, word: str) -> Turn:

@@ -13,10 +13,10 @@ from hilplant.runtime.server import Summary
 
 _NEXT = (
     ("hilplant replay {recording}", "the same inputs again, compared bit for bit"),
-    ("hilplant export {recording} demo.mf4", "or .blf, .asc, .csv, .parquet"),
+    ("hilplant export {recording} demo.blf", "as .blf, .asc, .csv, .parquet or .mf4, by the ending"),
     ("hilplant doctor", "what would make this machine more punctual"),
     ("hilplant run --channel vcan0", "the plant on SocketCAN, for an ECU of your own"),
-    ("hilplant ecu --channel vcan0", "or this stand-in for one, in a second terminal"),
+    ("hilplant ecu --channel vcan0", "a stand-in for an ECU, in a second terminal"),
 )
 
 
@@ -26,9 +26,7 @@ def summarise(run: Summary, recording: Path, plot: Path, console: Console) -> No
     plot_recording(recording, plot)
     lines = [*wiping_lines(figures(columns)), *loop_lines(run)]
     lines += [f"recording     {recording}", f"plot          {plot}", "", "next:"]
-    commands = [(command.format(recording=recording), what) for command, what in _NEXT]
-    width = max(len(command) for command, _ in commands)
-    lines += [f"  {command:<{width}}  {what}" for command, what in commands]
+    lines += [line for command, what in _NEXT for line in (f"  # {what}", f"  {command.format(recording=recording)}")]
     console.print("\n".join(lines), highlight=False, markup=False, soft_wrap=True)
 
 

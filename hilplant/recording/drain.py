@@ -103,9 +103,12 @@ def main(ring_name: str, path: str, loop_cpu: str) -> int:
         with contextlib.closing(Ring.attach(ring_name)) as ring, open(path, "xb") as file:
             writer = RecordingWriter(file, metadata, ring.row_width)
             writer.take(ring)
-            print("ready", flush=True)
+            os.write(sys.stdout.fileno(), b"ready\n")
             started = True
             record(ring, writer, file)
+    except BrokenPipeError:  # the daemon ended before it could start its loop
+        os.unlink(path)
+        return 1
     except OSError as error:
         cause = error.strerror or error
         if started:

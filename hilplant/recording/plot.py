@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from hilplant.failure import Failure
 from hilplant.recording.export import signal_columns
 from hilplant.recording.reader import read_recording
+from hilplant.units import SECOND_NS
 
 Columns = dict[str, NDArray[np.float64]]
 
@@ -42,7 +43,7 @@ def plot_recording(path: str | PathLike[str], out_png: str | PathLike[str]) -> N
         axes.spines[["top", "right"]].set_visible(False)
     figure.align_ylabels(panels[:-1])
     panels[-1].set_xlabel("time [s]")
-    panels[-1].set_xlim(columns["time_s"][0], columns["time_s"][-1])
+    panels[-1].set_xlim(0.0, max(columns["time_s"][-1], recording.run.step_ns / SECOND_NS))
     sparse = f", one tick in {stride}" if stride > 1 else ""
     figure.suptitle(f"{recording.run.name}: {columns['time_s'][-1]:.4g} s, recorded by hilplant{sparse}")
     try:

@@ -45,6 +45,20 @@ def test_a_folder_that_cannot_be_made_is_one_line(tmp_path):
         run_demo(8.0, tmp_path / "file" / "demo")
 
 
+def test_ctrl_c_before_the_plant_runs_leaves_nothing_and_says_nothing(tmp_path):
+    command = [sys.executable, "-m", "hilplant", "demo", "--out", str(tmp_path)]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    demo = subprocess.Popen(
+        command, text=True, start_new_session=True, env=os.environ | {"PYTHONUNBUFFERED": "1"}, **pipes
+    )
+    while "preparing" not in demo.stdout.readline():
+        pass
+    os.killpg(demo.pid, signal.SIGINT)
+    _, said = demo.communicate(timeout=60)
+    assert (demo.returncode, said) == (130, "")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_ctrl_c_ends_it_early_with_a_summary_of_what_was_done(tmp_path):
     command = [sys.executable, "-m", "hilplant", "demo", "--seconds", "60", "--out", str(tmp_path)]
     demo = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True)

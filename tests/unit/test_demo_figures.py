@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from hilplant.demo.figures import COLUMNS, figures
-from hilplant.demo.sequence import SHORTEST_S, sequence
+from hilplant.demo.sequence import SHORTEST_S, WHOLE_S, sequence
 from hilplant.demo.summary import loop_lines, wiping_lines
 from hilplant.ecu.stalk import stalk_at
 from hilplant.ecu.vocabulary import Master
@@ -64,7 +64,7 @@ def test_the_summary_fits_80_columns():
     assert max(map(len, lines)) <= 80
 
 
-@pytest.mark.parametrize("seconds", [None, SHORTEST_S, 12.0, 3600.0])
+@pytest.mark.parametrize("seconds", [None, WHOLE_S, 12.0, 3600.0])
 def test_the_sequence_shows_every_mode_in_order_within_its_time(seconds):
     plan = sequence(seconds)
     times = [turn.time_s for turn in plan.turns] + [plan.seconds]
@@ -76,7 +76,12 @@ def test_the_sequence_shows_every_mode_in_order_within_its_time(seconds):
     assert plan.seconds == (seconds or 20.0)
 
 
-@pytest.mark.parametrize("seconds", [7.9, 0.0, -1.0, math.nan, math.inf])
+@pytest.mark.parametrize("seconds", [SHORTEST_S, 3.0, 7.9])
+def test_a_short_demonstration_is_the_beginning_of_the_shortest_whole_one(seconds):
+    assert sequence(seconds) == sequence(WHOLE_S)._replace(seconds=seconds)
+
+
+@pytest.mark.parametrize("seconds", [0.9, 0.0, -1.0, math.nan, math.inf])
 def test_a_time_too_short_or_senseless_is_refused_in_one_line(seconds):
-    with pytest.raises(Failure, match=r"^demo: --seconds must be from 8 to 86400, not .*$"):
+    with pytest.raises(Failure, match=r"^demo: --seconds must be from 1 to 86400, not .*$"):
         sequence(seconds)

@@ -54,6 +54,14 @@ def test_the_picture_names_relays_park_mode_crank_and_current():
         assert part in text
 
 
+@pytest.mark.parametrize("stalk", ["intermittent 6", "off + flick", "off + wash"])
+def test_what_the_driver_does_stands_apart_from_the_relays(stalk):
+    console = Console(file=io.StringIO(), width=80, height=24, force_terminal=True, color_system=None)
+    with console.capture() as capture:
+        console.print(picture(reading(row_at(1.0)), Scene("title", stalk=stalk)))
+    assert f"stalk {stalk}  " in capture.get()
+
+
 def test_a_plain_line_holds_the_figures():
     line = plain_line(reading(row_at(3.25, crank_speed_rad_s=2.0 * math.pi, current_a=4.5)))
     assert line.split()[:3] == ["3.25", "s", "FAST"]
