@@ -25,9 +25,9 @@ app = typer.Typer(
     epilog="An expected failure is one line; with --debug anywhere, where it came from is shown too.",
 )
 
-app.add_typer(plot_app, name="plot")
-app.add_typer(study_app, name="study")
-app.add_typer(train_app, name="train")
+app.add_typer(plot_app, name="plot", short_help="Draw a recording, or what a bench is made of.")
+app.add_typer(study_app, name="study", short_help="Run the source's experiments again, beside its tables.")
+app.add_typer(train_app, name="train", short_help="Fit fast stand-ins to a bench's physical plant.")
 
 
 @app.command(epilog="Example: hilplant demo --seconds 12 --out demo")
@@ -213,7 +213,10 @@ def vcan(command: list[str]) -> None:
     raise typer.Exit(run_with_vcan(command, limit_s=0.0))
 
 
-@app.command(epilog='Example: hilplant inspect rig.csv --columns "voltage=U1,current=I1[mA],park=PS"')
+@app.command(
+    short_help="Say what is wrong with a measurement, and what it shows.",
+    epilog='Example: hilplant inspect rig.csv --columns "voltage=U1,current=I1[mA],park=PS"',
+)
 def inspect(  # noqa: PLR0913, PLR0917
     data: Path,
     columns: Annotated[str, typer.Option(help="role=NAME[unit],...: time, voltage, current, park, fast, on")] = "",
@@ -234,7 +237,10 @@ def inspect(  # noqa: PLR0913, PLR0917
     raise typer.Exit(0 if good else 1)
 
 
-@app.command(epilog="Example: hilplant sequence default --out sequence.yaml")
+@app.command(
+    short_help="Play a test sequence for identification, or write it.",
+    epilog="Example: hilplant sequence default --out sequence.yaml",
+)
 def sequence(
     bench: BenchName = DEFAULT,
     out: Annotated[Path | None, typer.Option(help="write it as a scenario, timed by this bench's plant")] = None,
@@ -276,7 +282,7 @@ def _one_line(error: Exception) -> str:
         return str(error)
     if hasattr(error, "format_message"):  # wrong use, as the library of the command line found it
         text: str = error.format_message()
-        command = sys.argv[1] if len(sys.argv) > 1 and "command" not in text else ""
-        hint = f"({f'hilplant {command}'.strip()} --help shows what is right)"
+        context = getattr(error, "ctx", None)
+        hint = f"({context.command_path if context else 'hilplant'} --help shows what is right)"
         return text if text.startswith("Usage") else f"{text} {hint}"
     return f"{type(error).__name__}: {error} (--debug shows where)"

@@ -87,9 +87,9 @@ def motor(
     out: Annotated[Path, typer.Option(help="motor file to write")],
     json_file: JsonFile = None,
 ) -> None:
-    """Make a motor's parameters from readings taken one by one, or from its data sheet.
+    """Make a motor file from readings or a data sheet.
 
-    With the standard error of each; docs/identification.md says what the file of readings holds.
+    With the standard error of each parameter; docs/identification.md says what the file of readings holds.
     """
     from hilplant.identify.motor_command import motor_from_readings
 
@@ -101,5 +101,11 @@ def motor(
 def add_to(app: typer.Typer) -> None:
     """Add these commands to the command line."""
     app.command(epilog="Example: hilplant motor my_readings.yaml --out my_motor.yaml")(motor)
-    app.command(epilog="Example: hilplant identify slow.csv@dry fast.csv@wet --out car.yaml")(identify)
-    app.command(epilog="Example: hilplant validate check.csv@dry --bench car.yaml --rms-current-a 0.2")(validate)
+    app.command(
+        short_help="Identify motor and friction from recordings.",
+        epilog="Example: hilplant identify slow.csv@dry fast.csv@wet --out car.yaml",
+    )(identify)
+    app.command(
+        short_help="Hold a bench against recordings.",
+        epilog="Example: hilplant validate check.csv@dry --bench car.yaml --rms-current-a 0.2",
+    )(validate)

@@ -6,11 +6,26 @@ from typing import Annotated
 import typer
 
 from hilplant.cli_options import DEFAULT, BenchName, JsonFile, claim, write_json
+from hilplant.failure import Failure
+
+PICTURES = (".png", ".svg", ".pdf")
+
+
+def _drawable(path: Path) -> Path:
+    """Refuse a picture that cannot be written, before any work is done for it."""
+    if path.suffix.lower() not in PICTURES:
+        raise Failure(f"{path}: the ending must be one of {', '.join(PICTURES)}")
+    if not path.parent.is_dir():
+        raise Failure(f"{path}: cannot be written: there is no folder {path.parent}")
+    return path
+
+
+Picture = Annotated[Path, typer.Argument(help=f"picture to write: {', '.join(PICTURES)}", callback=_drawable)]
 
 plot_app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
-    help="Draw a recording, or what a bench is made of, as a PNG picture.",
+    help="Draw a recording, or what a bench is made of, as a picture: PNG, SVG or PDF.",
     epilog="Example: hilplant plot positions default wiper.png",
 )
 study_app = typer.Typer(
@@ -21,7 +36,11 @@ study_app = typer.Typer(
 )
 
 
-@study_app.command("control", epilog="Example: hilplant study control --out study --json study.json")
+@study_app.command(
+    "control",
+    short_help="Compare all velocity controllers, section 7.2.",
+    epilog="Example: hilplant study control --out study --json study.json",
+)
 def study_control(
     bench: BenchName = DEFAULT,
     out: Annotated[Path | None, typer.Option(help="folder for the pictures")] = None,
@@ -38,7 +57,11 @@ def study_control(
     write_json(json_file, control_study(bench, out, search))
 
 
-@study_app.command("identification", epilog="Example: hilplant study identification --json study.json")
+@study_app.command(
+    "identification",
+    short_help="Compute Tables 5-2 to 5-5 again.",
+    epilog="Example: hilplant study identification --json study.json",
+)
 def study_identification(json_file: JsonFile = None) -> None:
     """Compute Tables 5-2 to 5-5 again, each printed number beside ours.
 
@@ -52,7 +75,11 @@ def study_identification(json_file: JsonFile = None) -> None:
     raise typer.Exit(1 if any(line.agrees == "no" for line in lines) else 0)
 
 
-@study_app.command("thesis", epilog="Example: hilplant study thesis")
+@study_app.command(
+    "thesis",
+    short_help="Run the source's own checks again.",
+    epilog="Example: hilplant study thesis",
+)
 def study_thesis(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
     """Run the source's own checks of motor, park circuits and mechanics.
 
@@ -66,7 +93,11 @@ def study_thesis(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None
     raise typer.Exit(0 if holds else 1)
 
 
-@study_app.command("solver", epilog="Example: hilplant study solver default")
+@study_app.command(
+    "solver",
+    short_help="Hold the step against an adaptive solver.",
+    epilog="Example: hilplant study solver default",
+)
 def study_solver(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
     """Hold the step against an adaptive solver of the same equations.
 
@@ -80,7 +111,11 @@ def study_solver(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None
     raise typer.Exit(0 if within else 1)
 
 
-@study_app.command("twin", epilog="Example: hilplant study twin --seeds 100 --full 5 --json twin.json")
+@study_app.command(
+    "twin",
+    short_help="Identify data of a known bench.",
+    epilog="Example: hilplant study twin --seeds 100 --full 5 --json twin.json",
+)
 def study_twin(
     bench: BenchName = DEFAULT,
     seeds: Annotated[int, typer.Option(help="noises for the last stage alone; minutes for 100", min=0)] = 10,
@@ -101,7 +136,11 @@ def study_twin(
     raise typer.Exit(0 if good else 1)
 
 
-@study_app.command("wiping", epilog="Example: hilplant study wiping default")
+@study_app.command(
+    "wiping",
+    short_help="Tell cycles a minute and currents, 9 to 16 V.",
+    epilog="Example: hilplant study wiping default",
+)
 def study_wiping(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
     """Tell cycles a minute and currents from 9 to 16 V, dry and wet.
 
@@ -113,7 +152,11 @@ def study_wiping(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None
     write_json(json_file, wiping_study(bench))
 
 
-@study_app.command("surrogates", epilog="Example: hilplant study surrogates --seconds 600 --out study")
+@study_app.command(
+    "surrogates",
+    short_help="Compare cost and accuracy of all loads and motors.",
+    epilog="Example: hilplant study surrogates --seconds 600 --out study",
+)
 def study_surrogates(
     seconds: Annotated[float, typer.Option(min=40.0, help="how long each model drives the bus")] = 600.0,
     out: Annotated[Path | None, typer.Option(help="folder for the picture")] = None,
@@ -132,7 +175,9 @@ def study_surrogates(
 
 
 @plot_app.command("recording", epilog="Example: hilplant plot recording run.hilrec run.png")
-def plot_recording(recording: Path, out: Path) -> None:
+def plot_recording(
+    recording: Annotated[Path, typer.Argument(help="what run --record has written")], out: Picture
+) -> None:
     """Draw a recording: voltage, current, speed, arms, switches."""
     from hilplant.recording.plot import plot_recording as draw
 
@@ -141,7 +186,7 @@ def plot_recording(recording: Path, out: Path) -> None:
 
 
 @plot_app.command("positions", epilog="Example: hilplant plot positions default wiper.png")
-def plot_positions(bench: BenchName, out: Path) -> None:
+def plot_positions(bench: BenchName, out: Picture) -> None:
     """Draw linkage, arms and blades in four positions."""
     from hilplant.bench import load_bench
     from hilplant.studies.positions_plot import plot_positions as draw
@@ -152,7 +197,7 @@ def plot_positions(bench: BenchName, out: Path) -> None:
 
 
 @plot_app.command("torque", epilog="Example: hilplant plot torque default torque.png")
-def plot_torque(bench: BenchName, out: Path) -> None:
+def plot_torque(bench: BenchName, out: Picture) -> None:
     """Draw the torque over the crank angle, dry, tacky and wet."""
     from hilplant.bench import load_bench
     from hilplant.studies.mechanics_plots import plot_torque as draw
@@ -162,7 +207,7 @@ def plot_torque(bench: BenchName, out: Path) -> None:
 
 
 @plot_app.command("conditions", epilog="Example: hilplant plot conditions default conditions.png")
-def plot_conditions(bench: BenchName, out: Path) -> None:
+def plot_conditions(bench: BenchName, out: Picture) -> None:
     """Draw the torque of five wipes, wet, in wind, and dry.
 
     That is the test of section 4.6.
@@ -175,7 +220,7 @@ def plot_conditions(bench: BenchName, out: Path) -> None:
 
 
 @plot_app.command("park", epilog="Example: hilplant plot park park.png")
-def plot_park(out: Path) -> None:
+def plot_park(out: Picture) -> None:
     """Draw slow, fast, off with the three park circuits."""
     from hilplant.studies.park_plot import plot_park_sequences
 
