@@ -5,6 +5,7 @@ interface that python-can knows is driven through it, polled, without its thread
 """
 
 import contextlib
+import logging
 from typing import Any
 
 from hilplant.bus.frame import Frame
@@ -110,15 +111,31 @@ def _open(arguments: dict[str, Any]) -> can.BusABC:
     """Open a bus by the bench's arguments alone; python-can's own configuration files are left aside."""
     if wrong := wrong_interface(arguments):
         raise TransportError(wrong)
-    interface = arguments["interface"]
+    said = _Said()
+    logger = logging.getLogger("can")
+    logger.addHandler(said)
     try:
         return can.Bus(**arguments, ignore_config=True)
     except Exception as error:  # drivers raise whatever their libraries raise
         reason = " ".join(str(error).split()) or type(error).__name__
         given = ", ".join(f"{name}: {value}" for name, value in arguments.items() if name != "interface")
+        reasons = "; ".join([reason, *said.lines])
         raise TransportError(
-            f"the interface {interface} ({given or 'no arguments'}) cannot be opened: {reason}"
+            f"the interface {arguments['interface']} ({given or 'no arguments'}) cannot be opened: {reasons}"
         ) from error
+    finally:
+        logger.removeHandler(said)
+
+
+class _Said(logging.Handler):
+    """What python-can logs while it opens an interface, often the real reason; else it would stand on stderr."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.lines: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.lines.append(" ".join(record.getMessage().split()))
 
 
 def _known() -> str:

@@ -1,5 +1,6 @@
 """python-can behind the transport: its virtual interface for real, its failures by stand-ins."""
 
+import logging
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -112,6 +113,20 @@ def test_a_device_that_is_gone_is_down_until_it_can_be_opened_again(
     assert transport.up
     transport.close()
     assert not transport.up
+
+
+def test_what_python_can_logs_stands_in_the_one_line(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def unavailable(**_: object) -> None:
+        logging.getLogger("can.kvaser").warning("canlib is\nunavailable")
+        raise NameError("name 'canOpen' is not defined")
+
+    monkeypatch.setattr(can, "Bus", unavailable)
+    with pytest.raises(TransportError, match=r"opened: name 'canOpen' is not defined; canlib is unavailable$"):
+        open_transport({"interface": "kvaser", "channel": 0})
+    assert capfd.readouterr().err == ""
+    assert logging.getLogger("can").handlers == []
 
 
 def test_arguments_are_passed_on_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
