@@ -15,6 +15,8 @@ from hilplant.recording.metadata import RecordedBench, describe
 from hilplant.runtime.ring import Ring
 
 _START_TIMEOUT_S = 30.0
+#: Files that `export` makes of a recording; a recording under such a name would pass for one.
+_EXPORTED = (".mf4", ".blf", ".asc", ".csv", ".parquet")
 
 
 class Recorder:
@@ -83,8 +85,10 @@ def start_recorder(ring: Ring, path: Path, bench: RecordedBench, loop_cpu: int |
     Raises
     ------
     Failure
-        When the file exists already or cannot be written.
+        When the file exists already or cannot be written, or its ending is that of another format.
     """
+    if path.suffix.lower() in _EXPORTED:
+        raise Failure(f"{path}: a recording is no {path.suffix} file; record to .hilrec, and hilplant export makes one")
     metadata = describe(bench, datetime.now(UTC))
     command = [sys.executable, "-m", "hilplant.recording.drain", ring.name, str(path)]
     child = subprocess.Popen(

@@ -99,6 +99,8 @@ def test_a_file_that_is_there_already_is_left_alone(run: Any, tmp_path: Path) ->
 
 
 def test_a_folder_that_is_not_there_is_said_before_the_run(run: Any, tmp_path: Path) -> None:
+    with pytest.raises(Failure, match=r"run\.mf4: a recording is no \.mf4 file; record to \.hilrec"):
+        start_recorder(run.ring, tmp_path / "run.mf4", run.bench)
     with pytest.raises(Failure, match="cannot record to this file: No such file or directory"):
         start_recorder(run.ring, tmp_path / "nowhere" / "run.hilrec", run.bench)
 
