@@ -169,7 +169,9 @@ def _wait(guest: subprocess.Popen[bytes], folder: Path, stdin: int, limit_s: flo
     started = time.monotonic()
     deadlines = [started + limit_s] if limit_s else []
 
-    def interrupt(*_: object) -> None:
+    def interrupt(number: int, _: object) -> None:
+        if not (folder / "ready").exists():  # nobody is there yet who could heed it
+            raise SystemExit(128 + number)
         with suppress(OSError):  # a terminal passes its own
             os.write(stdin, INTERRUPT)
         deadlines.append(time.monotonic() + GRACE_S)

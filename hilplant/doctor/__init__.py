@@ -1,5 +1,6 @@
 """What of this machine helps or hinders real time and CAN, with the command that mends it."""
 
+import textwrap
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
@@ -29,11 +30,15 @@ def examine(root: Path = Path("/")) -> list[Finding]:
 
 
 def print_findings(findings: list[Finding]) -> None:
-    """Show the findings on stdout, one to a line, each command on a line of its own to be copied."""
+    """Show the findings on stdout, one to a line where no terminal is to be fitted, each command whole to be copied."""
     console = Console(highlight=False)
     width = max(len(finding.name) for finding in findings)
+    indent = " " * (len("warn ") + width + 2)
     for finding in findings:
         state = Text(f"{finding.state:<5}", style=_COLOURS[finding.state])
-        console.print(state, f"{finding.name:<{width}}  {finding.what}", sep="", soft_wrap=True, markup=False)
+        what = finding.what
+        if console.is_terminal:
+            what = f"\n{indent}".join(textwrap.wrap(what, max(30, console.width - len(indent)), break_long_words=False))
+        console.print(state, f"{finding.name:<{width}}  {what}", sep="", soft_wrap=True, markup=False)
         if finding.mend_command:
-            console.print(f"     {'':<{width}}  $ {finding.mend_command}", style="bold", soft_wrap=True, markup=False)
+            console.print(f"     $ {finding.mend_command}", style="bold", soft_wrap=True, markup=False)

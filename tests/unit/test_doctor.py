@@ -78,3 +78,18 @@ def test_a_machine_without_linux_files_and_calls_is_examined_without_an_exceptio
     findings = doctor.examine(tmp_path)
     doctor.print_findings(findings)
     assert "SocketCAN" in capsys.readouterr().out
+
+
+def test_in_a_terminal_findings_break_between_words_and_commands_not_at_all(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "60")
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("NO_COLOR", "1")
+    what, command = "several words " * 12, "sudo " + "x" * 90
+    doctor.print_findings([doctor.Finding("name", "warn", what.strip(), command)])
+    *lines, last = capsys.readouterr().out.splitlines()
+    assert len(lines) == 4
+    assert all(len(line) <= 60 and line.endswith(("several", "words")) for line in lines)
+    assert f"     $ {command}" in last
