@@ -56,14 +56,14 @@ def prepare(testing: bool) -> None:
     """Make the environment, or renew it when pyproject.toml, the folder or what is asked of it has changed."""
     wanted = hashlib.sha256((HERE / "pyproject.toml").read_bytes() + str(HERE).encode()).hexdigest()
     installed = STAMP.read_text(encoding="utf-8").split() if STAMP.exists() and PYTHON.exists() else []
-    if installed[:1] == [wanted] and (not testing or "test" in installed):
+    extra = "test" if testing or "test" in installed else "mdf"
+    if installed == [wanted, extra]:
         return
-    extra = "[test]" if testing or "test" in installed else ""
-    print(f"start.py: installing hilplant{extra} into {VENV} (once, about two minutes) ...", flush=True)
+    print(f"start.py: installing hilplant[{extra}] into {VENV} (once, about two minutes) ...", flush=True)
     if installed[:1] != [wanted]:
         make_environment()
-    run_quietly([str(PYTHON), "-m", "pip", "install", "-q", "--disable-pip-version-check", "-e", f"{HERE}{extra}"])
-    STAMP.write_text(f"{wanted} {'test' if extra else ''}\n", encoding="utf-8")
+    run_quietly([str(PYTHON), "-m", "pip", "install", "-q", "--disable-pip-version-check", "-e", f"{HERE}[{extra}]"])
+    STAMP.write_text(f"{wanted} {extra}\n", encoding="utf-8")
 
 
 def make_environment() -> None:
