@@ -37,9 +37,10 @@ def identify(  # noqa: PLR0913, PLR0917 a command has as many options as it has
     date: Annotated[str | None, typer.Option(help="date in the files; today when left out")] = None,
     json_file: JsonFile = None,
 ) -> None:
-    """Identify motor and friction of a real wiper from recordings, with intervals.
+    """Identify motor and friction from recordings.
 
-    Three stages: transfer function, global search, least squares. What the data cannot tell is named.
+    Of a real wiper, with intervals. Three stages: transfer function, global search, least squares. What the data
+    cannot tell is named.
     """
     from hilplant.identify.identify_command import Request, identify_files
 
@@ -70,9 +71,9 @@ def validate(  # noqa: PLR0913, PLR0917
     frames: Frames = None,
     json_file: JsonFile = None,
 ) -> None:
-    """Hold a bench against recordings: errors of current and park edges.
+    """Hold a bench against recordings.
 
-    Exit code 1 when one is above a bound that was given.
+    Errors of current and park edges. Exit code 1 when one is above a bound that was given.
     """
     from hilplant.identify.validate_command import validate_files
 
@@ -101,11 +102,5 @@ def motor(
 def add_to(app: typer.Typer) -> None:
     """Add these commands to the command line."""
     app.command(epilog="Example: hilplant motor my_readings.yaml --out my_motor.yaml")(motor)
-    app.command(
-        short_help="Identify motor and friction from recordings.",
-        epilog="Example: hilplant identify slow.csv@dry fast.csv@wet --out car.yaml",
-    )(identify)
-    app.command(
-        short_help="Hold a bench against recordings.",
-        epilog="Example: hilplant validate check.csv@dry --bench car.yaml --rms-current-a 0.2",
-    )(validate)
+    app.command(epilog="Example: hilplant identify slow.csv@dry fast.csv@wet --out car.yaml")(identify)
+    app.command(epilog="Example: hilplant validate check.csv@dry --bench car.yaml --rms-current-a 0.2")(validate)
