@@ -16,6 +16,9 @@ train_app = typer.Typer(
     epilog="Example: hilplant train torque default --out trained",
 )
 
+#: No wiper's crank turns faster: two hundred wipes a minute.
+_FASTEST_RAD_S = 21.0
+
 Out = Annotated[Path, typer.Option(help="folder for the trained file, the report and its plots")]
 Seed = Annotated[int, typer.Option(min=0, help="where all random numbers begin; the same seed gives the same file")]
 
@@ -111,6 +114,8 @@ def _speeds(text: str) -> tuple[float, ...]:
         speeds = tuple(float(part) for part in text.split(","))
     except ValueError:
         raise Failure(f"--speeds: numbers with commas between are wanted, such as 1,3,5,7, not '{text}'") from None
-    if len(speeds) < 2 or speeds[0] <= 0.0 or any(low >= high for low, high in pairwise(speeds)):
-        raise Failure(f"--speeds: at least two rising speeds above 0 are wanted, such as 1,3,5,7, not '{text}'")
+    rising = len(speeds) > 1 and all(low < high for low, high in pairwise(speeds))
+    if not (rising and speeds[0] > 0.0 and speeds[-1] <= _FASTEST_RAD_S):
+        wanted = f"at least two rising speeds above 0 and up to {_FASTEST_RAD_S:g}"
+        raise Failure(f"--speeds: {wanted} rad/s are wanted, such as 1,3,5,7, not '{text}'")
     return speeds

@@ -13,6 +13,7 @@ from hilplant.bench.assembly import Bench
 from hilplant.control.catalogue import ADAPTING, BLIND_NOISE
 from hilplant.control.closed_loop import observe_rows
 from hilplant.control.design import armature, model
+from hilplant.jit import uninterrupted
 from hilplant.models.records import Brush, Motor, Parameters
 from hilplant.studies.control_network import Floats, Record, record
 
@@ -98,7 +99,8 @@ def estimated(bench: Bench, data: Record, fast: bool, path: Floats) -> dict[str,
     speeds = {ESTIMATORS[0]: network_speeds(data, path)}
     for name, adapting in zip(ESTIMATORS[1:], (0.0, ADAPTING), strict=True):
         speeds[name] = np.empty(len(rows))
-        observe_rows(believed, period_s, adapting, rows, speeds[name])
+        with uninterrupted():
+            observe_rows(believed, period_s, adapting, rows, speeds[name])
     return speeds
 
 

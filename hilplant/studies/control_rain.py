@@ -16,6 +16,7 @@ from hilplant.bench.assembly import Bench, initial_state
 from hilplant.control.catalogue import without_network
 from hilplant.control.closed_loop import TRACE, run_rows
 from hilplant.control.records import POWER_ON, Controller
+from hilplant.jit import uninterrupted
 from hilplant.models.plant import simulate_rows
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import TURN_RAD
@@ -88,7 +89,8 @@ def controlled_duty(bench: Bench, needs: Floats, controller: Controller) -> Duty
         nonlocal memory
         reference = np.full(len(rows), need * TURN_RAD / 60.0)
         plant = (state, bench.parameter_row, bench.tables)
-        memory = run_rows(memory, controller, tables, plant, (rows, reference, outputs, trace))
+        with uninterrupted():
+            memory = run_rows(memory, controller, tables, plant, (rows, reference, outputs, trace))
 
     return _duty(bench, needs, piece, CONVERTER_EFFICIENCY)
 

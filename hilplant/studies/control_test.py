@@ -12,6 +12,7 @@ from hilplant.control.catalogue import without_network
 from hilplant.control.closed_loop import TRACE, run_rows
 from hilplant.control.controller import Tables
 from hilplant.control.records import POWER_ON, Controller
+from hilplant.jit import uninterrupted
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import SECOND_NS, TURN_RAD
 
@@ -102,7 +103,8 @@ def run_drive(bench: Bench, controller: Controller, drive: Drive, tables: Tables
     outputs, trace = np.empty((ticks, len(OUTPUTS))), np.empty((ticks, len(TRACE)))
     plant = (state, bench.parameter_row, bench.tables)
     rows = (drive.input_rows[:ticks], drive.reference_rad_s, outputs, trace)
-    run_rows(POWER_ON, controller, tables or without_network(), plant, rows)
+    with uninterrupted():
+        run_rows(POWER_ON, controller, tables or without_network(), plant, rows)
     time_s = np.arange(ticks, dtype=np.float64) * np.float64(bench.step_ns / SECOND_NS)
     return Run(time_s, drive.reference_rad_s, outputs, trace)
 

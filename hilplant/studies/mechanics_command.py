@@ -83,7 +83,7 @@ def solver_study(bench: str) -> tuple[dict[str, Any], bool]:
         errors = compare(parameters, loaded.tables, channels, rows())
         found = {"current": errors.current_percent, "speed": errors.speed_percent, "angle": errors.angle_percent}
         table.add_row(name, *(f"{value:.1e}" for value in found.values()))
-        key = re.sub(r"\W+", "_", name)
+        key = re.sub(r"\W+", "_", name.lower())
         figures |= {f"{key}_{signal}_rms_percent": value for signal, value in found.items()}
     _print(table)
     worst = max(figures.values())

@@ -19,6 +19,7 @@ from hilplant.models.records import pack
 from hilplant.signals import OUTPUT_INDEX, OUTPUTS
 from hilplant.studies.bus_run import BusRun, drive
 from hilplant.surrogates.narx import NETWORK
+from hilplant.train.report import folder_of
 from hilplant.units import SECOND_NS
 
 matplotlib.use("Agg")
@@ -189,12 +190,12 @@ def plot(compared: list[Compared], path: Path) -> None:
 
 def surrogates_study(seconds: float, out: Path | None) -> tuple[bool, dict[str, Any]]:
     """Print the comparison, draw it into `out`, and say whether every model of a load or motor kept the goals."""
+    folder = None if out is None else folder_of(out)
     compared = compare(seconds)
     print("\n".join(lines(compared, seconds)))
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-        plot(compared, out / "surrogates.png")
-        print(f"{out / 'surrogates.png'} written")
+    if folder is not None:
+        plot(compared, folder / "surrogates.png")
+        print(f"{folder / 'surrogates.png'} written")
     figures: dict[str, Any] = {"bus_s": seconds}
     for one in compared:
         key = one.name.replace(" ", "_")

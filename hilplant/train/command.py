@@ -224,7 +224,7 @@ def _torque_lines(figures: Figures) -> list[str]:
         f"worst {figures['scenario_worst_n_m']:.3f} N m, RMS {figures['scenario_rms_n_m']:.3f} N m",
         f"against the physical plant: current RMS {figures['scenario_current_rms_a']:.3f} A of "
         f"{figures['scenario_current_range_a']:.1f} A, park closings {figures['scenario_park_stops']}, "
-        f"of them other {figures['scenario_park_stops_differing']}",
+        f"of them in one run only {figures['scenario_park_stops_differing']}",
     ]
 
 

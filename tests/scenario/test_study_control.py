@@ -1,5 +1,9 @@
 """`hilplant study control` as a whole: near the source's tables, the same order, and a controller that beats them."""
 
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -207,6 +211,32 @@ def test_the_command_prints_its_tables_draws_its_pictures_and_writes_its_figures
     assert all(key == key.lower() and " " not in key for key in figures)
     for words in ("Table 7-2", "Table 7-5", "Table 7-6", "Without a speed sensor", "resistance +20 %", "mixed rain"):
         assert words in told
+
+
+INTERRUPTED = """
+from hilplant.bench import load_bench
+from hilplant.control.catalogue import controller_named
+from hilplant.studies.control_test import run_drive, thesis_drive
+
+bench = load_bench("default")
+controller, drive = controller_named("pid", bench.parameters.motor, 0.001), thesis_drive(bench)
+run_drive(bench, controller, drive)
+for _ in range(5):
+    try:
+        print("running", flush=True)
+        while True:
+            run_drive(bench, controller, drive)
+    except KeyboardInterrupt:
+        pass
+"""
+
+
+def test_an_interrupt_in_compiled_code_ends_it_without_a_crash():
+    with subprocess.Popen([sys.executable, "-c", INTERRUPTED], stdout=subprocess.PIPE, text=True) as process:
+        for _ in iter(process.stdout.readline, ""):
+            time.sleep(0.05)
+            process.send_signal(signal.SIGINT)
+    assert process.returncode == 0
 
 
 def test_a_bench_without_a_wet_screen_is_refused_in_one_line(tmp_path: Path):
