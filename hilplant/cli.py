@@ -12,7 +12,7 @@ from hilplant import cli_identification
 from hilplant.cli_options import DEFAULT, BenchName, Channel, JsonFile, Seconds, claim, flat, write_json
 from hilplant.cli_studies import plot_app, study_app
 from hilplant.cli_train import train_app
-from hilplant.failure import Failure
+from hilplant.failure import Failure, Unfit
 
 app = typer.Typer(
     name="hilplant",
@@ -264,7 +264,10 @@ cli_identification.add_to(app)
 
 
 def main() -> None:
-    """Run the command line; what goes wrong is one line on stderr and exit code 2, `--debug` shows its origin."""
+    """Run the command line; what goes wrong is one line on stderr and exit code 2, `--debug` shows its origin.
+
+    Where data were judged and will not do it is exit code 1.
+    """
     debug = "--debug" in sys.argv and sys.argv[1] != "vcan"  # behind vcan it is the command's own
     arguments = [argument for argument in sys.argv[1:] if not debug or argument != "--debug"]
     try:
@@ -273,7 +276,7 @@ def main() -> None:
         if debug:
             raise
         typer.echo(_one_line(error), err=True)
-        raise SystemExit(2) from None
+        raise SystemExit(1 if isinstance(error, Unfit) else 2) from None
     raise SystemExit(code if isinstance(code, int) else 0)
 
 

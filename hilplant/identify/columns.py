@@ -86,6 +86,11 @@ def unit_scale(place: str, role: str, unit: str) -> float:
     return _SCALES[own][unit]
 
 
+def has_unit(role: str, unit: str) -> bool:
+    """Say whether a unit is one of those that the role comes in."""
+    return unit in _SCALES.get(ROLES[role], {})
+
+
 def choose_columns(given: Mapping[str, Column], names: Mapping[str, Channel], source: str) -> dict[str, Column]:
     """Return the column of each role: as given, else by a known name.
 

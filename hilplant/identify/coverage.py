@@ -7,11 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from hilplant.bench import Bench
-from hilplant.identify.experiment import Run, make_run
+from hilplant.identify.experiment import Run
 from hilplant.identify.local_search import search
 from hilplant.identify.measurement import Samples
 from hilplant.identify.parameters import Choice, chosen
 from hilplant.identify.residuals import Problem, expected_noise
+from hilplant.identify.run_of_data import make_run
 from hilplant.identify.twin import Clean, Condition, Spoiling, played, spoilt
 from hilplant.identify.uncertainty import NORMAL_95, spread, verdicts
 from hilplant.units import SECOND_NS

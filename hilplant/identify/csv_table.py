@@ -12,7 +12,8 @@ from pyarrow import csv
 from hilplant.failure import Failure
 from hilplant.identify.measurement import Samples
 
-_HEAD_LINES = 200
+#: Lines in which header, separator and decimal sign are looked for.
+_HEAD_LINES = 5000
 _UNIT = re.compile(r"[\[(]\s*(?P<unit>[^\])]*?)\s*[\])]\s*$")
 _ROW = re.compile(r"Row #(\d+)")
 
@@ -44,6 +45,8 @@ def read_csv(path: Path) -> Table:
     """
     with open(path, encoding="utf-8-sig", errors="replace") as file:
         head = [line.rstrip("\r\n") for _, line in zip(range(_HEAD_LINES), file, strict=False)]
+    if not any(head):
+        raise Failure(f"{path}: is empty")
     layout = _layout(head)
     if layout is None:
         raise Failure(f"{path}: no table of numbers found in its first {len(head)} lines; separators are , ; and tab")
@@ -65,15 +68,19 @@ def read_csv(path: Path) -> Table:
 
 
 def _layout(head: Sequence[str]) -> _Layout | None:
-    """Find separator, decimal sign and the first row of numbers: the combination that gives the most columns."""
-    best: _Layout | None = None
+    """Find separator, decimal sign and the first row of numbers: those that give the most columns, then rows.
+
+    The rows decide where the first ones hold whole numbers only.
+    """
+    best, most = None, (0, 0)
     for separator, decimal in ((",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ",")):
         first = next((index for index, line in enumerate(head) if _is_row(line, separator, decimal)), None)
         if first is None:
             continue
         names, units = _header(head, first, separator)
-        if best is None or len(names) > len(best.names):
-            best = _Layout(separator, decimal, first, names, units)
+        size = len(names), sum(_is_row(line, separator, decimal) for line in head)
+        if size > most:
+            best, most = _Layout(separator, decimal, first, names, units), size
     return best
 
 

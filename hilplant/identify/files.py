@@ -41,6 +41,8 @@ def read_channels(origin: Origin) -> Channels:
     ending = origin.path.suffix.lower()
     if ending not in ENDINGS:
         raise Failure(f"{origin.path}: the ending must be one of {', '.join(ENDINGS)}")
+    if origin.path.is_dir():
+        raise Failure(f"{origin.path}: cannot be read: it is a folder")
     if not origin.path.is_file():
         raise Failure(f"{origin.path}: cannot be read: there is no such file")
     try:

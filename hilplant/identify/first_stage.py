@@ -19,8 +19,7 @@ from hilplant.failure import Failure
 from hilplant.identify.alignment import voltage_steps
 from hilplant.identify.bench_measurements import Friction, back_emf_constant, mean_of, no_load_friction
 from hilplant.identify.bench_measurements import SteadyRun as _Turn
-from hilplant.identify.checks import running
-from hilplant.identify.measurement import Mask, Measurement, Samples
+from hilplant.identify.measurement import Mask, Measurement, Samples, running
 from hilplant.identify.park import rising_edges
 from hilplant.identify.srivc import Fit, Stretch, fit
 from hilplant.identify.transfer_function import (

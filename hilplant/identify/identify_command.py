@@ -12,7 +12,7 @@ import typer
 from hilplant.bench import Bench, load_bench
 from hilplant.failure import Failure
 from hilplant.identify.executor import Executor, here, on_cluster
-from hilplant.identify.experiment import Run, make_run
+from hilplant.identify.experiment import Run
 from hilplant.identify.genetic import Settings
 from hilplant.identify.journal import Journal
 from hilplant.identify.measurement import Samples
@@ -21,6 +21,7 @@ from hilplant.identify.optimisers import budget, optimiser
 from hilplant.identify.parameters import BY_NAME, Choice, chosen
 from hilplant.identify.progress_display import ProgressDisplay
 from hilplant.identify.result_files import Origin, write_bench
+from hilplant.identify.run_of_data import make_run
 from hilplant.identify.starting_point import Known, starting_point
 from hilplant.identify.three_stages import Identified, Task, identify
 
@@ -130,7 +131,8 @@ def _identity(request: Request, bench: Bench, named: list[Named]) -> str:
     digest = hashlib.sha256(bench.parameter_row.tobytes() + bench.tables.tobytes() + bench.input_row.tobytes())
     for each in named[: len(request.data)]:
         digest.update(f"{each.screen} {each.data.sha256}".encode())
-        digest.update(each.data.current_a.tobytes() + each.data.fast.tobytes())
+        for values in (each.data.voltage_v, each.data.current_a, each.data.park, each.data.fast):
+            digest.update(values.tobytes())
     choices = (request.hold, request.also, request.search, request.generations, request.population, request.ordered)
     digest.update(repr((choices, request.seed)).encode())
     return digest.hexdigest()

@@ -77,3 +77,8 @@ class Measurement:
     def __len__(self) -> int:
         """Return the number of samples."""
         return len(self.time_s)
+
+
+def running(data: Measurement) -> Mask:
+    """Say where the motor is on: the terminal voltage above a tenth of its highest."""
+    return np.asarray(np.abs(data.voltage_v) > 0.1 * float(np.max(np.abs(data.voltage_v))), dtype=np.bool_)

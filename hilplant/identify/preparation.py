@@ -3,11 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.signal import butter, sosfiltfilt
 
 from hilplant.failure import Failure
-from hilplant.identify.alignment import current_shift, rest_offset
-from hilplant.identify.columns import Column, choose_columns, unit_scale
+from hilplant.identify.alignment import current_shift
+from hilplant.identify.baseline import Correction, corrected
+from hilplant.identify.columns import Column, choose_columns, has_unit, unit_scale
 from hilplant.identify.files import Channels, Origin, read_channels, sha256
 from hilplant.identify.measurement import Channel, Mask, Measurement, Native, Samples
 from hilplant.identify.outliers import near_steps, spikes
@@ -17,8 +17,6 @@ from hilplant.identify.resampling import OnClock, checked, on_clock, shared_cloc
 #: A shift in time is corrected when it is this many standard errors, and this many samples, away from none: a step of
 #: the voltage may lie anywhere between two samples.
 SHIFT_ERRORS, SHIFT_SAMPLES = 4.0, 1.0
-#: Offsets below this are none [A, V].
-LEAST_OFFSET = 1e-3
 
 
 class Preparation(NamedTuple):
@@ -36,12 +34,6 @@ class Preparation(NamedTuple):
     park_shift_s: float = 0.0
     park_inverted: bool | None = None
     mode: str | None = None
-
-
-class _Signals(NamedTuple):
-    voltage: Samples
-    current: Samples
-    notes: tuple[str, ...]
 
 
 def read_measurement(
@@ -75,7 +67,7 @@ def prepare(channels: Channels, columns: dict[str, Column], how: Preparation, so
     raw["park"] = _shifted(raw["park"], how.park_shift_s)
     shift_s = how.current_shift_s
     if shift_s is None:
-        shift_s, note = _find_shift(raw, native, how.step_s)
+        shift_s, note = _find_shift(raw, native, how.step_s, source)
         notes += note
     elif shift_s:
         notes += (f"current taken {1e3 * shift_s:.2f} ms earlier, as told",)
@@ -85,7 +77,9 @@ def prepare(channels: Channels, columns: dict[str, Column], how: Preparation, so
 
 def _in_si(channel: Channel, column: Column, role: str, place: str) -> Channel:
     unit = column.unit if column.unit is not None else channel.unit
-    scale = unit_scale(place, role, unit) * column.factor if column.factor == 1.0 or column.unit else column.factor
+    if column.factor != 1.0 and column.unit is None and not has_unit(role, unit):
+        unit = ""  # a clamp: the factor leads from the file's unit to the role's own
+    scale = unit_scale(place, role, unit) * column.factor
     return Channel(channel.time_s, channel.values * scale, unit, channel.held and role != "current")
 
 
@@ -102,11 +96,13 @@ def _shifted(channel: Channel, earlier_s: float) -> Channel:
     return Channel(channel.time_s - earlier_s, channel.values, channel.unit, channel.held)
 
 
-def _find_shift(raw: dict[str, Channel], native: dict[str, Native], step_s: float) -> tuple[float, tuple[str, ...]]:
+def _find_shift(
+    raw: dict[str, Channel], native: dict[str, Native], step_s: float, source: str
+) -> tuple[float, tuple[str, ...]]:
     """Estimate by how much the current is late, on a clock as fine as the data."""
     fine_s = min(step_s, max(native["current"].period_s, native["voltage"].period_s))
     pair = {role: raw[role] for role in ("voltage", "current")}
-    clock = shared_clock(list(pair.values()), fine_s)
+    clock = shared_clock(list(pair.values()), fine_s, source)
     times = raw["voltage"].time_s
     clock = clock + (times[np.searchsorted(times, clock[0])] - clock[0])  # on the voltage's samples: steps stay steps
     clock = clock[clock <= min(times[-1], raw["current"].time_s[-1])]
@@ -125,14 +121,14 @@ def _find_shift(raw: dict[str, Channel], native: dict[str, Native], step_s: floa
 def _assemble(
     raw: dict[str, Channel], native: dict[str, Native], how: Preparation, notes: tuple[str, ...], source: str
 ) -> Measurement:
-    clock = shared_clock(list(raw.values()), how.step_s)
+    clock = shared_clock(list(raw.values()), how.step_s, source)
     on = {role: on_clock(raw[role], native[role], clock, _holds(role, raw[role])) for role in raw}
     voltage = on["voltage"].values * (on["on"].values > 0.5) if "on" in on else on["voltage"].values
     notes += _clock_notes(native, how.step_s)
     present = on["voltage"].present & on["current"].present
     outlier = _outliers(voltage, on["current"].values, how.step_s, native)
     notes += _counted(present, outlier & present)
-    signals = _corrected(voltage, on["current"].values, how)
+    signals = corrected(voltage, on["current"].values, how.step_s, Correction(how.offset_a, how.filter_hz))
     closed = contact(on["park"].values, how.step_s, how.park_inverted)
     notes += signals.notes + _park_notes(closed.threshold, closed.inverted, closed.bounces, raw["park"])
     return Measurement(
@@ -150,7 +146,9 @@ def _clock_notes(native: dict[str, Native], step_s: float) -> tuple[str, ...]:
         f"{role} {1.0 / each.period_s:.4g} Hz" if each.period_s > 0.0 else f"{role} once"
         for role, each in native.items()
     )
-    return (f"sampled at {rates}; brought to {1.0 / step_s:.4g} Hz",)
+    notes = [f"sampled at {rates}; brought to {1.0 / step_s:.4g} Hz"]
+    notes += [f"{role}: cells without a number: {each.missing}" for role, each in native.items() if each.missing]
+    return tuple(notes)
 
 
 def _outliers(voltage: Samples, current: Samples, step_s: float, native: dict[str, Native]) -> Mask:
@@ -166,45 +164,6 @@ def _counted(present: Mask, outlier: Mask) -> tuple[str, ...]:
     notes = [f"{missing} of {len(present)} samples lie in gaps: bridged by a straight line, not used"] * (missing > 0)
     notes += [f"{strange} of {len(present)} samples are outliers: left as they are, not used"] * (strange > 0)
     return tuple(notes)
-
-
-def _corrected(voltage: Samples, current: Samples, how: Preparation) -> _Signals:
-    current, notes = _without_offset(current, voltage, how)
-    level = rest_offset(voltage, voltage, how.step_s)
-    if level is not None and abs(level.value) > LEAST_OFFSET:
-        voltage = voltage - level.value
-        notes += (f"offset of the voltage: {level.value:.4g} V subtracted",)
-    if how.filter_hz is not None:
-        voltage, current = (low_pass(values, how.step_s, how.filter_hz) for values in (voltage, current))
-        notes += (f"voltage and current filtered forwards and backwards, fourth order, {how.filter_hz:g} Hz",)
-    return _Signals(voltage, current, notes)
-
-
-def _without_offset(current: Samples, voltage: Samples, how: Preparation) -> tuple[Samples, tuple[str, ...]]:
-    if how.offset_a is not None:
-        return current - how.offset_a, (f"offset of the current: {how.offset_a:.4g} A subtracted, as told",)
-    found = rest_offset(current, voltage, how.step_s)
-    if found is None:
-        return current, ("offset of the current: cannot be told, the motor never rests with its terminals at 0 V",)
-    told = f"{found.value:.4g} A (standard error {found.error:.2g} A)"
-    if abs(found.value) <= max(3.0 * found.error, LEAST_OFFSET):
-        return current, (f"offset of the current: {told}: none that counts, nothing changed",)
-    return current - found.value, (f"offset of the current: {told} subtracted",)
-
-
-def low_pass(values: Samples, period_s: float, corner_hz: float) -> Samples:
-    """Return the values behind a Butterworth low-pass of fourth order that runs forwards, then backwards.
-
-    Raises
-    ------
-    Failure
-        When the corner is not below half the sampling rate.
-
-    """
-    if not 0.0 < corner_hz < 0.5 / period_s:
-        raise Failure(f"a filter of {corner_hz:g} Hz needs more than {2.0 * corner_hz:g} samples a second")
-    sections = butter(4, corner_hz, fs=1.0 / period_s, output="sos")
-    return np.asarray(sosfiltfilt(sections, values), np.float64)
 
 
 def _park_notes(threshold: float, inverted: bool, bounces: int, raw: Channel) -> tuple[str, ...]:

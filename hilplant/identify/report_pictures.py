@@ -42,6 +42,7 @@ def run_picture(comparison: Comparison) -> str:
     steps.plot(time_s, run.park_steps, color=_MEASURED, lw=2.0, drawstyle="steps-post")
     steps.plot(time_s, comparison.park_steps, color=_SIMULATED, lw=1.0, ls="--", drawstyle="steps-post")
     steps.set_ylabel("park steps")
+    steps.yaxis.get_major_locator().set_params(integer=True)
     steps.set_xlabel("time [s]")
     for axes in (current, residual, steps):
         axes.grid(alpha=0.25)

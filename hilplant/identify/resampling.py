@@ -8,7 +8,9 @@ from hilplant.failure import Failure
 from hilplant.identify.measurement import Channel, Mask, Native, Samples
 
 #: A distance between samples beyond this many usual ones is a gap.
-GAP_PERIODS = 2.5
+GAP_PERIODS = 1.5
+#: No test of a wiper lasts longer; its time has another unit [s].
+LONGEST_S = 10_000.0
 #: Fewer samples than this are no channel, unless it is one that is sent when it changes.
 FEWEST = 10
 #: A channel this many times faster than the common clock is averaged over each step, not picked from.
@@ -57,7 +59,7 @@ def repeats(values: Samples) -> int:
     return usual if usual > 1 and float(np.mean(distances % usual == 0)) > 0.9 else 1
 
 
-def shared_clock(channels: list[Channel], step_s: float) -> Samples:
+def shared_clock(channels: list[Channel], step_s: float, source: str) -> Samples:
     """Return the times [s] at which all channels have values, from where the last of them begins.
 
     One that is sent when it changes keeps its value to the end.
@@ -65,14 +67,17 @@ def shared_clock(channels: list[Channel], step_s: float) -> Samples:
     Raises
     ------
     Failure
-        When the channels do not overlap in time.
+        When the channels do not overlap in time, or last too long.
 
     """
     start = max(channel.time_s[0] for channel in channels)
     end = min(channel.time_s[-1] for channel in [each for each in channels if not each.held] or channels)
+    if end - start > LONGEST_S:
+        text = f"{source}: the time goes on for {(end - start) / 3600.0:.3g} hours; if it has another unit, say"
+        raise Failure(f"{text} --columns time=NAME[ms], or [us]; if not, cut the file")
     count = int(np.floor((end - start) / step_s + 1e-6)) + 1
     if count < 10:
-        raise Failure(f"the channels share {max(0.0, end - start):.3g} s of time; that is no measurement")
+        raise Failure(f"{source}: the channels share {max(0.0, end - start):.3g} s of time; that is no measurement")
     return np.asarray(start + np.arange(count) * step_s, np.float64)
 
 

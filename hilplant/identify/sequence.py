@@ -77,9 +77,7 @@ def advance(player: Player, stages: Sequence[Stage], contact: bool, now_s: float
     return Player(player.place + 1, now_s, 0, contact) if done else player
 
 
-def play(
-    stages: Sequence[Stage], step_s: float, contact_after: Callable[[Stage], bool]
-) -> list[tuple[float, Stage]]:
+def play(stages: Sequence[Stage], step_s: float, contact_after: Callable[[Stage], bool]) -> list[tuple[float, Stage]]:
     """Run a sequence in virtual time; `contact_after` lets the plant take one step and gives its park contact.
 
     Returns when each stage began [s], and at the end the stage in which nothing is on any more.

@@ -130,9 +130,7 @@ class Rig:
 _PERIOD_NS, _SILENCE_NS = 2_000_000, 2_000_000_000
 
 
-def drive(
-    rig: Rig, stages: Sequence[Stage], clock: Any, stop: Callable[[], bool], tell: Callable[[str], None]
-) -> None:
+def drive(rig: Rig, stages: Sequence[Stage], clock: Any, stop: Callable[[], bool], tell: Callable[[str], None]) -> None:
     """Go through the stages until the last has ended, or `stop` says so.
 
     Raises

@@ -6,8 +6,8 @@ from typing import Any
 import typer
 
 from hilplant.bench import load_bench
-from hilplant.identify.experiment import make_run
 from hilplant.identify.named_data import read_named
+from hilplant.identify.run_of_data import make_run
 from hilplant.identify.validation import compare
 
 Bounds = tuple[float | None, float | None]

@@ -52,7 +52,8 @@ def _compared(run: Run, row: NDArray[np.float64], tables: NDArray[np.float64]) -
     offset, start = (found.x * found.problem.scale)[:2]
     made = simulate_run(run, row[np.newaxis], np.array([start]), tables)
     current = made.current_a[0] + offset
-    errors, late = (current - run.current_a)[run.valid], edge_errors_s(run, made.phase_rad)[0]
+    errors = (current - run.current_a)[run.valid]
+    late = edge_errors_s(found.problem.localised(found.x).runs[0], made.phase_rad)[0]  # by the speed at each edge
     error = RunError(
         run.name, _rms(errors), float(np.max(np.abs(errors))), float(np.mean(np.abs(run.current_a[run.valid]))),
         noise.current_a, _rms(late), float(start), float(offset),

@@ -14,11 +14,11 @@ from hilplant.bench import check_bench, load_bench
 from hilplant.identify.cost import cost_of
 from hilplant.identify.coverage import off_start, plays_of, twin_runs
 from hilplant.identify.executor import evaluator, here, on_cluster
-from hilplant.identify.experiment import make_run
 from hilplant.identify.genetic import Settings
 from hilplant.identify.local_search import search
 from hilplant.identify.parameters import chosen, search_space
 from hilplant.identify.residuals import Problem, expected_noise
+from hilplant.identify.run_of_data import make_run
 from hilplant.identify.three_stages import Task, identify
 from hilplant.identify.twin import CLEAN, Condition, Spoiling, played, spoilt, thesis_conditions, write_csv
 from hilplant.identify.twin_study import published_start

@@ -55,6 +55,15 @@ def test_a_csv_of_an_instrument(tmp_path: Path) -> None:
     same(read_measurement(Origin(path), parse_columns("time=t,voltage=U1,current=I1,park=PS"), EXACT))
 
 
+def test_decimal_commas_that_come_late(tmp_path: Path) -> None:
+    """A recording that begins with whole numbers, as a motor at rest does, still has decimal commas further down."""
+    path = tmp_path / "rest.csv"
+    rows = [f"{1e3 * t:.0f};{v:.0f};{f'{i:.2f}' if i else '0'};{p:.0f}".replace(".", ",") for t, v, i, p in zip(
+        TIME_S, VOLTS, AMPERES, PARK, strict=True)]  # fmt: skip
+    path.write_text("\n".join(["t [ms];U1 [V];I1 [A];PS", *rows]), "utf-8")
+    same(read_measurement(Origin(path), parse_columns("time=t,voltage=U1,current=I1,park=PS"), EXACT))
+
+
 def test_units_in_the_header_and_units_that_the_user_overrides(tmp_path: Path) -> None:
     path = tmp_path / "log.csv"
     rows = [f"{t!r},{v!r},{i!r},{p!r}" for t, v, i, p in zip(*(a.tolist() for a in PLAIN.values()), strict=True)]
@@ -77,6 +86,8 @@ def test_a_line_that_is_no_row_of_numbers_is_named(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("name", "content", "message"), [
     ("a.xls", "x", "the ending must be one of"),
     ("a.csv", "hello\nworld\n", "no table of numbers"),
+    ("a.csv", "", "is empty"),
+    ("a.csv", "time_s,terminal_v\n", "no table of numbers"),
     ("a.csv", "a,b\n1,2\n3,4\n", "--columns time="),
     ("a.csv", "time_s,b\n,2\n3,4\n", r"a\.csv:2: the row has no time"),
     ("a.parquet", "x", "not a Parquet file"),
@@ -88,6 +99,13 @@ def test_a_file_that_cannot_be_read_is_told(tmp_path: Path, name: str, content: 
     (tmp_path / name).write_text(content)
     with pytest.raises(Failure, match=message):
         read_channels(Origin(tmp_path / name, bench="virtual"))
+
+
+def test_a_folder_and_a_file_that_is_not_there_are_told(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").mkdir()
+    for name, message in (("a.csv", "it is a folder"), ("b.csv", "there is no such file")):
+        with pytest.raises(Failure, match=message):
+            read_channels(Origin(tmp_path / name))
 
 
 def test_a_missing_column_lists_what_there_is(tmp_path: Path) -> None:
