@@ -1,7 +1,9 @@
 """Profile intervals: how far a parameter can go, all others following, before the data speak against it.
 
 All parameters and both sides are walked together, so that each step is one batch of simulations. The others follow by
-Gauss-Newton steps with the derivatives of the best point, except along directions that the data do not tell anyway.
+Gauss-Newton steps with the derivatives of the best point, except along directions that the data do not tell anyway:
+over their length no derivative holds. A parameter that hangs on one of these gets the interval of first order instead,
+which allows for all of them; a profile without them would be too narrow.
 """
 
 from collections.abc import Sequence
@@ -11,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.identify.local_search import Solution
-from hilplant.identify.measurement import Samples
+from hilplant.identify.measurement import Mask, Samples
 from hilplant.identify.uncertainty import NORMAL_95, RISE_95, Spread, Verdict
 
 Matrix = NDArray[np.float64]
@@ -22,6 +24,8 @@ FOLLOWING, DISTANCES = 2, 4
 NEAR = 0.05
 #: A direction in which the standard error is more than this part of the search space is not followed.
 LOOSE = 0.25
+#: A parameter hangs on directions that are not followed when they make its variance larger by this factor.
+HANGS = 1.05
 
 
 class Interval(NamedTuple):
@@ -41,7 +45,7 @@ def profile(solution: Solution, known: Spread, said: Sequence[Verdict]) -> list[
     if not told:
         return intervals
     walk = _Walk(solution, known, told)
-    ends = walk.ends()
+    ends = np.where(walk.hangs(), walk.first_order(), walk.ends())
     for row, place in enumerate(told):
         intervals[place] = Interval(_finite(ends[row]), _finite(ends[row + len(told)]))
     return intervals
@@ -57,12 +61,12 @@ class _Walk:
     def __init__(self, solution: Solution, known: Spread, places: list[int]) -> None:
         self.solution = solution
         self.held, self.sign = np.tile(places, 2), np.repeat([-1.0, 1.0], len(places))
-        variance = float(np.mean(solution.residuals**2))
-        self.wanted = RISE_95 * known.widening[self.held] * variance
-        errors = np.sqrt(np.diag(known.covariance))[self.held]
+        self.variance = float(np.mean(solution.residuals**2)) * known.widening[self.held]
+        self.wanted = RISE_95 * self.variance
+        self.errors = np.sqrt(np.diag(known.covariance))[self.held]
         bound = np.where(self.sign < 0.0, solution.low[self.held], solution.high[self.held])
         self.reach = np.abs(bound - solution.x[self.held])
-        self.distance = np.minimum(NORMAL_95 * errors, self.reach)
+        self.distance = np.minimum(NORMAL_95 * self.errors, self.reach)
         self.gains = {place: _gain(solution, place) for place in places}
 
     def ends(self) -> Samples:
@@ -75,9 +79,26 @@ class _Walk:
                 break
             met = np.clip(met, 0.3 * self.distance, 3.0 * self.distance)
             self.distance = np.minimum(met, self.reach)
+        return np.where(beyond, np.inf, self._values(met))
+
+    def hangs(self) -> Mask:
+        """Say of which ends the variance to first order is larger than with the followed directions alone."""
+        jacobian, rows = self.solution.jacobian, []
+        for place in self.held:
+            column = jacobian[:, place]
+            slopes = jacobian.T @ column
+            rows.append(float(column @ column - slopes @ self.gains[place] @ slopes))
+        followed = self.variance / np.maximum(rows, 1e-300)
+        return np.asarray(self.errors**2 > HANGS * followed, np.bool_)
+
+    def first_order(self) -> Samples:
+        """Return the ends by the standard error; not finite where the bound comes first."""
+        distance = NORMAL_95 * self.errors
+        return np.where(distance < self.reach, self._values(distance), np.inf)
+
+    def _values(self, distance: Samples) -> Samples:
         scale = self.solution.problem.scale[self.held]
-        found = self.solution.x[self.held] * scale + self.sign * met * scale
-        return np.where(beyond, np.inf, found)
+        return np.asarray((self.solution.x[self.held] + self.sign * distance) * scale, np.float64)
 
     def rises(self) -> Samples:
         """Return how much the sum of squares rises at the distances, the others following."""

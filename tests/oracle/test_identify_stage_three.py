@@ -86,6 +86,24 @@ def test_a_linear_problem_gives_the_normal_equations(regression):
     assert np.allclose(solution.values - ends[:, 0], 1.96 * found, rtol=0.05)
 
 
+def test_an_interval_allows_for_what_is_hardly_told(regression):
+    """The first parameter is told, but hangs on the last, which is not: ordinary least squares over all says how far.
+
+    A profile along which the last one stayed where it is would be four times too narrow.
+    """
+    design = regression[0].copy()
+    along, across = np.linalg.qr(np.random.default_rng(5).standard_normal((len(design), 2)))[0].T
+    design[:, 0], design[:, 3] = 30.0 * along, 3.0 * along + 0.8 * across
+    data = design @ np.array([1.0, 1.1, 0.9, 1.05]) + np.random.default_rng(6).standard_normal(len(design))
+    solution = search(Straight(design, data), np.array([1.0, 1.1, 0.9, 1.05]))
+    known = spread(solution)
+    said = verdicts(solution, known)
+    assert [each.told for each in said] == [True, True, True, False]
+    error = np.sqrt(np.linalg.inv(design.T @ design)[0, 0])
+    low, high = profile(solution, known, said)[0]
+    assert 1.96 * 0.97 * error < 0.5 * (high - low) < 1.96 * 1.5 * error
+
+
 def test_residuals_that_hang_together_widen_the_intervals(regression):
     """Noise that stays the same for 50 samples says 50 times less; the intervals must say so too."""
     design, _ = regression
