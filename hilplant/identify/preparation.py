@@ -64,7 +64,10 @@ def prepare(channels: Channels, columns: dict[str, Column], how: Preparation, so
         place = f"{source}, column '{column.name}'"
         raw[role], native[role] = checked(_in_si(channels[column.name], column, role, place), place)
     notes = _unit_notes(chosen, channels)
-    raw["park"] = _shifted(raw["park"], how.park_shift_s)
+    seen_late_s = _seen_late_s(raw["park"], native["park"], how.step_s)
+    raw["park"] = _shifted(raw["park"], how.park_shift_s + seen_late_s)
+    if seen_late_s:
+        notes += (f"park edges taken {1e3 * seen_late_s:.3g} ms earlier: so much later they are seen on average",)
     shift_s = how.current_shift_s
     if shift_s is None:
         shift_s, note = _find_shift(raw, native, how.step_s, source)
@@ -94,6 +97,14 @@ def _unit_notes(chosen: dict[str, Column], channels: Channels) -> tuple[str, ...
 
 def _shifted(channel: Channel, earlier_s: float) -> Channel:
     return Channel(channel.time_s - earlier_s, channel.values, channel.unit, channel.held)
+
+
+def _seen_late_s(park: Channel, native: Native, step_s: float) -> float:
+    """Return by how much more than on the clock an edge is late on average, as it is seen half a sample after it [s].
+
+    In whole steps, so that the clock stays on the samples. A contact that is sent when it changes is not late.
+    """
+    return 0.0 if park.held else step_s * max(0.0, np.floor(0.5 * (native.period_s / step_s - 1.0) + 1e-6))
 
 
 def _find_shift(
