@@ -11,42 +11,41 @@ from hilplant.identify.experiment import Run
 from hilplant.identify.local_search import search
 from hilplant.identify.measurement import Samples
 from hilplant.identify.parameters import Choice, chosen
+from hilplant.identify.profile import Interval, profile
 from hilplant.identify.residuals import Problem, expected_noise
 from hilplant.identify.run_of_data import make_run
-from hilplant.identify.twin import Clean, Condition, Spoiling, played, spoilt
-from hilplant.identify.uncertainty import NORMAL_95, spread, verdicts
-from hilplant.units import SECOND_NS
+from hilplant.identify.twin import Condition, Spoiling, recorded
+from hilplant.identify.uncertainty import spread, verdicts
 
 
 class Trial(NamedTuple):
-    """One noise: what was told, whether the truth lies inside, and errors in units of the standard error."""
+    """One noise: what was told, whether its interval holds the truth, and errors in units of the standard error."""
 
     seed: int
     told: dict[str, bool]
+    inside: dict[str, bool]
     errors: dict[str, float]
-    residual_a: float
 
 
 class Coverage(NamedTuple):
-    """How often each parameter was told, and how often the truth was then inside its 95 % interval."""
+    """How often each parameter was told, and how often its 95 % interval then held the truth.
+
+    `mean` and `deviation` are those of its errors in units of the standard error: 0 and 1 where all is right.
+    """
 
     trials: int
     told: dict[str, int]
     inside: dict[str, int]
+    mean: dict[str, float]
+    deviation: dict[str, float]
 
 
-def twin_runs(bench: Bench, plays: Sequence[tuple[Condition, Clean]], how: Spoiling, seed: int) -> list[Run]:
-    """Return what identification gets: clean plays spoilt by this seed."""
-    step_s = bench.step_ns / SECOND_NS
+def twin_runs(bench: Bench, conditions: Sequence[Condition], how: Spoiling, seed: int) -> list[Run]:
+    """Return what identification gets of one seed: its own start and switching in each recording, its own noise."""
     return [
-        make_run(spoilt(clean, how, step_s, 1000 * seed + place), bench, condition.screen)
-        for place, (condition, clean) in enumerate(plays)
+        make_run(recorded(bench, condition, how, 1000 * seed + place), bench, condition.screen)
+        for place, condition in enumerate(conditions)
     ]
-
-
-def plays_of(bench: Bench, conditions: Sequence[Condition], how: Spoiling) -> list[tuple[Condition, Clean]]:
-    """Play each condition once; the noise comes later."""
-    return [(condition, played(bench, condition, how)) for condition in conditions]
 
 
 def off_start(choice: Choice, seed: int, part: float) -> Samples:
@@ -60,10 +59,21 @@ def trial(bench: Bench, runs: Sequence[Run], seed: int, part: float = 0.2) -> Tr
     choice = chosen(bench.parameter_row)
     start = off_start(choice, seed, part)
     found = search(Problem(runs, choice, bench.tables, expected_noise(runs), np.abs(start)), start)
-    said = verdicts(found, spread(found))
+    known = spread(found)
+    said = verdicts(found, known)
     truth = dict(zip(choice.names, choice.values, strict=True))
-    errors = {each.name: (each.value - truth[each.name]) / each.standard_error for each in said}
-    return Trial(seed, {each.name: each.told for each in said}, errors, found.noise.current_a)
+    intervals = zip(said, profile(found, known, said), strict=True)
+    return Trial(
+        seed,
+        {each.name: each.told for each in said},
+        {each.name: each.told and holds(interval, truth[each.name]) for each, interval in intervals},
+        {each.name: (each.value - truth[each.name]) / each.standard_error for each in said},
+    )
+
+
+def holds(interval: Interval, value: float) -> bool:
+    """Say whether a value lies inside; a side that is open holds everything."""
+    return bool((interval.low is None or interval.low <= value) and (interval.high is None or value <= interval.high))
 
 
 def trials(
@@ -71,10 +81,9 @@ def trials(
     done: Callable[[Trial], None] = lambda _: None,
 ) -> list[Trial]:  # fmt: skip
     """Run a trial for each seed."""
-    plays = plays_of(bench, conditions, how)
     found = []
     for seed in seeds:
-        found.append(trial(bench, twin_runs(bench, plays, how, seed), seed))
+        found.append(trial(bench, twin_runs(bench, conditions, how, seed), seed))
         done(found[-1])
     return found
 
@@ -86,5 +95,8 @@ def coverage(found: Sequence[Trial]) -> Coverage:
     for each in found:
         for name, is_told in each.told.items():
             told[name] += is_told
-            inside[name] += is_told and abs(each.errors[name]) <= NORMAL_95
-    return Coverage(len(found), dict(told), dict(inside))
+            inside[name] += each.inside[name]
+    errors = {name: np.array([each.errors[name] for each in found]) for name in told}
+    mean = {name: float(np.mean(values)) for name, values in errors.items()}
+    deviation = {name: float(np.std(values)) for name, values in errors.items()}
+    return Coverage(len(found), dict(told), dict(inside), mean, deviation)

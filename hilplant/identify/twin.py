@@ -12,10 +12,14 @@ from numpy.typing import NDArray
 
 from hilplant.bench import Bench
 from hilplant.identify.measurement import Measurement, Samples
+from hilplant.identify.places import STATE_PLACE
 from hilplant.identify.sequence import OFF, Stage, play
 from hilplant.models.plant import tick
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
-from hilplant.units import SECOND_NS
+from hilplant.units import SECOND_NS, TURN_RAD
+
+#: A voltage is switched off this long after its park edge, at most [s].
+LATEST_OFF_S = 0.02
 
 
 class Spoiling(NamedTuple):
@@ -53,12 +57,24 @@ def thesis_conditions(voltages_v: Sequence[float]) -> list[Condition]:
     return [Condition(False, 0.0, tuple(voltages_v)), Condition(True, 1.0, tuple(voltages_v))]
 
 
-def stages(condition: Condition) -> list[Stage]:
-    """Return the test: each voltage is switched on at rest, and off at a park edge."""
+class Chance(NamedTuple):
+    """What no two recordings of a condition share.
+
+    The angle between crank and park angle at the start [rad], and how long after its park edge each voltage is switched
+    off [s]. So the crank starts each time from another angle, and the rounding of the park edges is another one too.
+    """
+
+    start_rad: float
+    late_s: tuple[float, ...]
+
+
+def stages(condition: Condition, late_s: Sequence[float] = ()) -> list[Stage]:
+    """Return the test: each voltage is switched on at rest, and off at a park edge or so much later."""
     off = OFF._replace(longest_s=0.3, fast=condition.fast)
     parts = [off]
-    for volts in condition.voltages_v:
-        parts += [Stage(True, condition.fast, volts, condition.turns, 20.0), off]
+    for place, volts in enumerate(condition.voltages_v):
+        on = Stage(True, condition.fast, volts, condition.turns, 20.0)
+        parts += [on, *(on._replace(edges=0, longest_s=late) for late in late_s[place : place + 1]), off]
     return parts
 
 
@@ -69,9 +85,20 @@ class Clean(NamedTuple):
     outputs: NDArray[np.float64]
 
 
-def played(bench: Bench, condition: Condition, ripple: Spoiling = CLEAN) -> Clean:
-    """Play a condition with a bench's plant."""
+def chance(bench: Bench, condition: Condition, seed: int) -> Chance:
+    """Draw where the crank rests within the park window, and how late each voltage is switched off."""
+    random = np.random.default_rng([seed, 21])
+    reach = bench.parameters.park_switch.half_window_rad
+    late = random.uniform(0.0, LATEST_OFF_S, len(condition.voltages_v))
+    return Chance(float(random.uniform(-reach, reach)), tuple(late.tolist()))
+
+
+def played(bench: Bench, condition: Condition, ripple: Spoiling = CLEAN, drawn: Chance | None = None) -> Clean:
+    """Play a condition with a bench's plant; with nothing drawn, from the bench's own start."""
     state, inputs, outputs = bench.state_row.copy(), bench.input_row.copy(), np.zeros(len(OUTPUTS))
+    if drawn is not None:
+        angle = bench.parameters.park_switch.angle_rad + drawn.start_rad
+        state[STATE_PLACE["crank_angle_rad"]] = angle % TURN_RAD
     rows: list[Samples] = []
     made: list[Samples] = []
     inputs[INPUT_INDEX["screen"]] = condition.screen
@@ -86,8 +113,14 @@ def played(bench: Bench, condition: Condition, ripple: Spoiling = CLEAN) -> Clea
         made.append(outputs.copy())
         return bool(outputs[OUTPUT_INDEX["park_contact"]] > 0.5)
 
-    play(stages(condition), step_s, contact_after)
+    play(stages(condition, drawn.late_s if drawn else ()), step_s, contact_after)
     return Clean(np.array(rows), np.array(made))
+
+
+def recorded(bench: Bench, condition: Condition, how: Spoiling, seed: int) -> Measurement:
+    """Play a condition as a rig would have recorded it: start, switching and noise are this seed's own."""
+    clean = played(bench, condition, how, chance(bench, condition, seed))
+    return spoilt(clean, how, bench.step_ns / SECOND_NS, seed)
 
 
 def spoilt(clean: Clean, how: Spoiling, step_s: float, seed: int) -> Measurement:

@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from hilplant.bench import load_bench
-from hilplant.identify.coverage import plays_of, twin_runs
+from hilplant.identify.coverage import twin_runs
+from hilplant.identify.experiment import simulate_run
 from hilplant.identify.local_search import left_over, search
 from hilplant.identify.parameters import SEVENTEEN, Choice, chosen
 from hilplant.identify.profile import profile
-from hilplant.identify.residuals import Noise, Problem, directions, expected_noise
-from hilplant.identify.twin import CLEAN, Condition, Spoiling
+from hilplant.identify.residuals import Noise, Problem, directions, edge_errors_s, expected_noise
+from hilplant.identify.run_of_data import make_run
+from hilplant.identify.twin import CLEAN, Condition, Spoiling, chance, played, spoilt, thesis_conditions
 from hilplant.identify.uncertainty import spread, verdicts
 
 COUNT, SAMPLES, EDGES = 4, 4000, 40
@@ -136,7 +138,8 @@ def test_what_two_columns_say_together_is_not_told_apart():
 def wipe():
     """One wipe at 14 V, slow and dry, as the plant makes it."""
     bench = load_bench("default")
-    runs = twin_runs(bench, plays_of(bench, [Condition(False, 0.0, (14.0,))], CLEAN), CLEAN, 0)
+    data = spoilt(played(bench, Condition(False, 0.0, (14.0,))), CLEAN, 0.001, 0)
+    runs = [make_run(data, bench, 0.0)]
     choice = chosen(bench.parameter_row)
     return bench, runs, Problem(runs, choice, bench.tables, Noise(0.1, 3e-4), np.abs(choice.values))
 
@@ -170,8 +173,33 @@ def test_derivatives_agree_with_richardson_extrapolation(wipe):
         assert error < 0.03, name
 
 
+def test_no_two_noises_share_the_rounding_of_their_park_edges(wipe):
+    """Over noises the time error of the true model at each edge is even within half a sample, and of no other edge's.
+
+    Were it the same in all, it would move every estimate the same way, and intervals would seem to hold too seldom.
+    """
+    bench, *_ = wipe
+    errors = []
+    for seed in range(40):
+        row = []
+        for condition in thesis_conditions((12.0, 16.0)):
+            drawn = chance(bench, condition, seed)
+            run = make_run(spoilt(played(bench, condition, CLEAN, drawn), CLEAN, 0.001, 0), bench, condition.screen)
+            made = simulate_run(run, bench.parameter_row[np.newaxis], np.array([drawn.start_rad]), bench.tables)
+            assert np.max(np.abs(made.current_a[0] - run.current_a)) < 1e-9
+            speeds = (made.phase_rad[0, run.edges] - made.phase_rad[0, run.edges - 1]) / 0.001
+            row += list(edge_errors_s(run, made.phase_rad)[0] * run.edge_speeds_rad_s / speeds)
+        errors.append(row)
+    found = np.array(errors) / 0.001
+    assert found.shape == (40, 4)
+    assert np.max(np.abs(found)) < 0.51  # the curve of the motion adds a little
+    assert np.std(found) == pytest.approx(12.0**-0.5, rel=0.15)
+    assert np.all(np.abs(np.mean(found, axis=0)) < 3.0 * 12.0**-0.5 / 40.0**0.5)
+    assert np.max(np.abs(np.corrcoef(found.T) - np.eye(4))) < 3.5 / 40.0**0.5
+
+
 def test_noise_is_seen_from_sample_to_sample(wipe):
     bench, *_ = wipe
     how = Spoiling(0.2, 0.01)
-    runs = twin_runs(bench, plays_of(bench, [Condition(False, 0.0, (14.0,))], how), how, 5)
+    runs = twin_runs(bench, [Condition(False, 0.0, (14.0,))], how, 5)
     assert expected_noise(runs).current_a == pytest.approx(0.2, rel=0.1)

@@ -12,8 +12,9 @@ import pytest
 
 from hilplant.bench import check_bench, load_bench
 from hilplant.identify.cost import cost_of
-from hilplant.identify.coverage import off_start, plays_of, twin_runs
+from hilplant.identify.coverage import off_start, twin_runs
 from hilplant.identify.executor import evaluator, here, on_cluster
+from hilplant.identify.experiment import simulate_run
 from hilplant.identify.genetic import Settings
 from hilplant.identify.local_search import search
 from hilplant.identify.parameters import chosen, search_space
@@ -39,7 +40,7 @@ def bench():
 
 def last_stage(bench, how, seed=1):
     """Return solution and verdicts of the last stage from a start that is 20 % off."""
-    runs = twin_runs(bench, plays_of(bench, thesis_conditions(VOLTS), how), how, seed)
+    runs = twin_runs(bench, thesis_conditions(VOLTS), how, seed)
     choice = chosen(bench.parameter_row)
     start = off_start(choice, seed, 0.2)
     solution = search(Problem(runs, choice, bench.tables, expected_noise(runs), np.abs(start)), start)
@@ -75,8 +76,8 @@ def test_the_motor_is_told_and_friction_is_not_guessed(bench, how):
 
 def test_three_stages_from_the_published_start_predict_held_out_data(bench):
     """(5.22) about Table 5-3 leaves out the truth of two parameters; the last stage goes on to it, and says so."""
-    runs = twin_runs(bench, plays_of(bench, thesis_conditions(VOLTS), CLEAN), Spoiling(), 3)
-    held_out = twin_runs(bench, plays_of(bench, thesis_conditions((13.0,)), CLEAN), Spoiling(), 4)
+    runs = twin_runs(bench, thesis_conditions(VOLTS), Spoiling(), 3)
+    held_out = twin_runs(bench, thesis_conditions((13.0,)), Spoiling(), 4)
     choice = chosen(bench.parameter_row)
     about = published_start(choice)
     found = identify(Task(bench, runs, choice, about, held_out, Settings(generations=15), seed=2))
@@ -96,7 +97,7 @@ def test_three_stages_from_the_published_start_predict_held_out_data(bench):
 
 def test_a_known_force_tells_more(bench):
     """With the force held, as from a spring balance, the settled dry coefficient is told."""
-    runs = twin_runs(bench, plays_of(bench, thesis_conditions(VOLTS), CLEAN), Spoiling(), 1)
+    runs = twin_runs(bench, thesis_conditions(VOLTS), Spoiling(), 1)
     choice = chosen(bench.parameter_row, held=["force_n", "mu_dry_1", "mu_dry_2"])
     start = off_start(choice, 1, 0.2)
     solution = search(Problem(runs, choice, bench.tables, expected_noise(runs), np.abs(start)), start)
@@ -120,9 +121,35 @@ def test_a_recording_that_begins_in_motion_is_used_from_its_first_park_edge(benc
     assert found.error.rms_current_a < 0.02
 
 
+def test_errors_of_park_edges_are_times(bench):
+    """Against the instants at which the model passes the closing angle; each edge was moved by 4 ms, either way."""
+    data = spoilt(played(bench, Condition(False, 0.0, (14.0,), turns=4)), CLEAN, 0.001, 0)
+    run = make_run(data, bench, 0.0)
+    run = replace(run, edges=run.edges + np.array([4, -4, 4, -4]))
+    (found,) = compare([run], bench.parameter_row, bench.tables)
+    made = simulate_run(run, bench.parameter_row[np.newaxis], np.array([found.error.start_rad]), bench.tables)
+    passed_s = np.interp(run.edge_angles_rad, made.phase_rad[0], run.time_s)
+    measured_s = (run.edges - 0.5) * run.period_s
+    assert found.edge_errors_s == pytest.approx(measured_s - passed_s, rel=0.05, abs=1e-4)
+    assert np.sqrt(np.mean(found.edge_errors_s**2)) == pytest.approx(found.error.rms_edge_s)
+
+
+def test_a_spike_of_the_voltmeter_does_not_drive_the_model(bench):
+    """The motor did not see it: the model's current stays as it is without the spike."""
+    data = spoilt(played(bench, Condition(False, 0.0, (14.0,))), CLEAN, 0.001, 0)
+    spiky = data.voltage_v.copy()
+    spiky[900] += 60.0
+    rows, starts = bench.parameter_row[np.newaxis], np.zeros(1)
+    currents = [
+        simulate_run(make_run(each, bench, 0.0), rows, starts, bench.tables).current_a
+        for each in (data, replace(data, voltage_v=spiky))
+    ]
+    assert np.max(np.abs(currents[0] - currents[1])) < 1e-6
+
+
 def test_a_dask_cluster_of_two_workers_gives_the_same_bits(bench):
     distributed = pytest.importorskip("distributed")
-    runs = twin_runs(bench, plays_of(bench, [Condition(True, 1.0, (16.0,))], CLEAN), Spoiling(), 1)
+    runs = twin_runs(bench, [Condition(True, 1.0, (16.0,))], Spoiling(), 1)
     choice = chosen(bench.parameter_row)
     cost = cost_of(runs, choice, bench.tables)
     low, high = search_space(choice, choice.values)
