@@ -65,8 +65,8 @@ def claim_beside(path: Path | None) -> None:
 def validate(  # noqa: PLR0913, PLR0917
     data: DataNames,
     bench: BenchOption = DEFAULT,
-    rms_current_a: Annotated[float | None, typer.Option(help="bound on the current's error, rms [A]")] = None,
-    rms_edge_ms: Annotated[float | None, typer.Option(help="bound on the park edges' error, rms [ms]")] = None,
+    rms_current_a: Annotated[float | None, typer.Option(min=0.0, help="bound on the current's error, rms [A]")] = None,
+    rms_edge_ms: Annotated[float | None, typer.Option(min=0.0, help="bound on the park edges' error, rms [ms]")] = None,
     columns: Columns = "",
     frames: Frames = None,
     json_file: JsonFile = None,

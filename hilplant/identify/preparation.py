@@ -184,10 +184,10 @@ def _park_notes(threshold: float, inverted: bool, bounces: int, raw: Channel) ->
 
 
 def _fast(on: dict[str, OnClock], mode: str | None, count: int) -> Samples:
-    if "fast" in on:
-        return (on["fast"].values > 0.5).astype(np.float64)
     if mode not in (None, "slow", "fast"):
         raise Failure(f"the mode must be slow or fast, not '{mode}'")
+    if "fast" in on:
+        return (on["fast"].values > 0.5).astype(np.float64)
     return np.full(count, np.nan if mode is None else float(mode == "fast"))
 
 

@@ -340,3 +340,9 @@ def test_a_time_that_runs_backwards_is_told() -> None:
     data["I1"] = replace(data["I1"], time_s=time_s)
     with pytest.raises(Failure, match="backwards at sample 701"):
         prepare(data, COLUMNS, Preparation())
+
+
+def test_an_unknown_mode_is_told_even_where_a_column_says_the_mode():
+    with pytest.raises(Failure, match="the mode must be slow or fast, not 'bogus'"):
+        fast = np.zeros(len(rig()["time"]))
+        prepare(channels(K2=fast), COLUMNS | {"fast": Column("K2")}, Preparation(mode="bogus"))
