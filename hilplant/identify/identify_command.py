@@ -23,10 +23,7 @@ from hilplant.identify.progress_display import ProgressDisplay
 from hilplant.identify.result_files import Origin, write_bench
 from hilplant.identify.run_of_data import make_run
 from hilplant.identify.starting_point import Known, starting_point
-from hilplant.identify.three_stages import Identified, Task, identify
-
-#: Beyond this many times its noise the current is said not to be explained.
-MANY_NOISES = 2.0
+from hilplant.identify.three_stages import EXPLAINED, Identified, Task, identify
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +155,7 @@ def _print(found: Identified, known: Known, written: list[Path]) -> None:
             typer.echo(f"{each.name} ({role}): current {each.rms_current_a:.4g} A rms, noise {each.noise_a:.4g} A")
     for comparison in found.fitted:
         left = comparison.error
-        if left.rms_current_a > MANY_NOISES * left.noise_a:
+        if left.rms_current_a > EXPLAINED * left.noise_a:
             text = "the model does not explain it, so intervals are too narrow; try another --seed, or look at the data"
             ratio = left.rms_current_a / left.noise_a
             typer.echo(f"{left.name}: the current's error is {ratio:.1f} times the noise: {text}", err=True)

@@ -22,8 +22,12 @@ from hilplant.identify.profile import Interval, profile
 from hilplant.identify.residuals import Problem, expected_noise
 from hilplant.identify.uncertainty import Spread, Verdict, spread, verdicts
 from hilplant.identify.validation import Comparison, compare
+from hilplant.models.records import MODEL_AT
 
 _TABLE_5_7 = Settings()
+
+#: Up to this many times its noise what is left of the current is explained by it.
+EXPLAINED = 1.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +98,7 @@ def identify(task: Task) -> Identified:
     evaluate = task.journal(computed)
     outcome = optimiser(task.search)(evaluate, space, task.settings, task.seed, lambda seen: task.told("search", seen))
     clock.append(time.perf_counter())
-    solution = _refined(task, outcome)
+    solution = refined(task, outcome)
     clock.append(time.perf_counter())
     known = spread(solution)
     said = verdicts(solution, known)
@@ -129,9 +133,23 @@ class _Computed:
         return self.evaluate(sets)
 
 
-def _refined(task: Task, outcome: Outcome) -> Solution:
-    """Search on from where stage 2 ended."""
+def refined(task: Task, outcome: Outcome) -> Solution:
+    """Search on from where stage 2 ended; while that leaves the current unexplained, from the next start as well."""
+    expected, solutions = expected_noise(task.runs), list[Solution]()
     usual = np.array([parameter.usual for parameter in task.choice.parameters])
-    scale = np.maximum(np.abs(outcome.values), 0.01 * usual)
-    problem = Problem(task.runs, task.choice, task.bench.tables, expected_noise(task.runs), scale)
-    return search(problem, outcome.values, lambda left_a: task.told("refine", left_a))
+    for values in _starts(task, outcome):
+        scale = np.maximum(np.abs(values), 0.01 * usual)
+        problem = Problem(task.runs, task.choice, task.bench.tables, expected, scale)
+        solutions.append(search(problem, values, lambda left_a: task.told("refine", left_a)))
+        if solutions[-1].noise.current_a < EXPLAINED * expected.current_a:
+            break
+    return min(solutions, key=lambda solution: solution.noise.current_a)
+
+
+def _starts(task: Task, outcome: Outcome) -> list[Samples]:
+    """Return where to begin: at stage 2's end, with its motor and the friction known beforehand, where its space lay.
+
+    Stage 2 may end where the force's factor of (4.50) is below 0: no friction, so no derivative says which way out.
+    """
+    motor = np.array([parameter.place < MODEL_AT for parameter in task.choice.parameters])
+    return [outcome.values, np.where(motor, outcome.values, task.about), task.about]

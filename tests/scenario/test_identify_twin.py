@@ -15,12 +15,12 @@ from hilplant.identify.cost import cost_of
 from hilplant.identify.coverage import off_start, twin_runs
 from hilplant.identify.executor import evaluator, here, on_cluster
 from hilplant.identify.experiment import simulate_run
-from hilplant.identify.genetic import Settings
+from hilplant.identify.genetic import Outcome, Settings
 from hilplant.identify.local_search import search
 from hilplant.identify.parameters import chosen, search_space
 from hilplant.identify.residuals import Problem, expected_noise
 from hilplant.identify.run_of_data import make_run
-from hilplant.identify.three_stages import Task, identify
+from hilplant.identify.three_stages import EXPLAINED, Task, identify, refined
 from hilplant.identify.twin import CLEAN, Condition, Spoiling, played, spoilt, thesis_conditions, write_csv
 from hilplant.identify.twin_study import published_start
 from hilplant.identify.uncertainty import spread, verdicts
@@ -93,6 +93,19 @@ def test_three_stages_from_the_published_start_predict_held_out_data(bench):
     assert dry.force_n == pytest.approx(7.615 * (0.3186 + 1.996), abs=4.0 * dry.standard_error_n)
     assert dry.standard_error_n < 0.05
     assert any("force_n" in each.tells for each in found.advice)
+
+
+def test_a_search_that_ended_without_wet_friction_is_begun_again(bench):
+    """Where mu_wet_7 F + mu_wet_4 is below 0 wet friction is 0, and nothing says which way out."""
+    runs = twin_runs(bench, thesis_conditions((14.0,)), Spoiling(), 3)
+    choice = chosen(bench.parameter_row)
+    ended = published_start(choice)
+    for name, value in (("mu_wet_4", 0.3), ("mu_wet_7", -0.08), ("damping_n_m_s", 1e-4)):
+        ended[choice.names.index(name)] = value
+    problem = Problem(runs, choice, bench.tables, expected_noise(runs), np.abs(ended))
+    assert search(problem, ended).noise.current_a > EXPLAINED * 0.1
+    solution = refined(Task(bench, runs, choice, published_start(choice)), Outcome(ended, 1.0, ()))
+    assert solution.noise.current_a == pytest.approx(0.1, rel=0.05)
 
 
 def test_a_known_force_tells_more(bench):
