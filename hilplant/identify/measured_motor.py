@@ -42,15 +42,25 @@ def parameters_of(readings: BenchReadings | DataSheet, beside: Path) -> Values:
 
     """
     values = _of_bench(readings, beside) if isinstance(readings, BenchReadings) else _of_sheet(readings)
-    values |= {name: quantity(value) for name, value in readings.given.model_dump(exclude_none=True).items()}
+    for name, value in readings.given.model_dump(exclude_none=True).items():
+        if name in values and name != "damping_n_m_s":
+            raise Failure(f"{name} is given, and the readings tell it too: leave one out")
+        values[name] = quantity(value)
     for name, remedy in _REMEDIES.items():
         if name not in values:
             raise Failure(f"nothing tells {name}: give {remedy}")
-    for name in ("damping_n_m_s", "coulomb_torque_n_m"):
-        if values[name].n < 0.0:
-            text = "take no-load points farther apart, or give damping_n_m_s"
-            raise Failure(f"{name} comes out below 0, {values[name]:.2uP}: {text}")
     return values
+
+
+def _refuse_impossible(values: Values) -> None:
+    """Refuse what no motor has; each text says what to look at."""
+    for name, value in values.items():
+        if name in ("damping_n_m_s", "coulomb_torque_n_m"):
+            if value.n < 0.0:
+                text = "take no-load points farther apart, or give damping_n_m_s"
+                raise Failure(f"{name} comes out below 0, {value:.2uP}: {text}")
+        elif not value.n > 0.0:
+            raise Failure(f"{name} comes out as {value:.2uP}, not above 0: check voltages, currents and speeds")
 
 
 _REMEDIES = {
@@ -72,6 +82,7 @@ def _of_bench(readings: BenchReadings, beside: Path) -> Values:
         values |= _inductance(name, mode, ohm, beside)
     friction = _friction(runs, constants, readings.given)
     values |= {"damping_n_m_s": quantity(friction[0]), "coulomb_torque_n_m": quantity(friction[1])}
+    _refuse_impossible(values)  # a run-down is read with this friction
     if readings.armature is not None:
         values["inertia_kg_m2"] = cylinder_inertia(readings.armature.mass_kg, readings.armature.radius_m)
     if readings.run_down is not None:
@@ -124,7 +135,10 @@ def _of_sheet(sheet: DataSheet) -> Values:
     ]
     friction = _friction(runs, [found.slow_constant_v_s, found.fast_constant_v_s], sheet.given)
     values |= {name: quantity(value) for name, value in friction._asdict().items()}
-    return values | ({} if found.gear_efficiency is None else {"gear_efficiency": found.gear_efficiency})
+    _refuse_impossible(values)
+    if found.gear_efficiency is not None:  # above 1 only within the sheet's tolerance
+        values["gear_efficiency"] = quantity(min(1.0, found.gear_efficiency.n), found.gear_efficiency.s)
+    return values
 
 
 def _speed(mode: SheetMode, tolerance: float) -> SpeedSheet:

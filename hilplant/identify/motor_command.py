@@ -13,6 +13,7 @@ from hilplant.failure import Failure
 from hilplant.identify.files import sha256
 from hilplant.identify.measured_motor import MODES, Values, parameters_of
 from hilplant.identify.readings import AnyReadings, BenchReadings, DataSheet
+from hilplant.recording.whole_file import write_text
 
 _BRUSH = ("resistance_ohm", "inductance_henry", "constant_v_s")
 
@@ -33,7 +34,8 @@ def motor_from_readings(path: Path, out: Path) -> dict[str, Any]:
         raise Failure(f"{path}: {error}") from error
     written = _document(path, readings, values)
     MotorFile.model_validate(written)
-    _write(out, "# From readings; `identified` has their standard errors.\n" + yaml.safe_dump(written, sort_keys=False))
+    head = "# From readings; `identified` has their standard errors.\n"
+    write_text(out, head + yaml.safe_dump(written, sort_keys=False))
     given = readings.given.model_fields_set
     for name, value in values.items():
         how_sure = ", given" if name in given else f" +- {value.s:.2g}" if value.s else ", without an error"
@@ -76,10 +78,3 @@ def _document(path: Path, readings: BenchReadings | DataSheet, values: Values) -
 
 def _figures(name: str, value: float, error: float) -> list[tuple[str, float]]:
     return [(name, value), (f"{name}_standard_error", error)]
-
-
-def _write(out: Path, text: str) -> None:
-    try:
-        out.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise Failure(f"{out}: cannot be written ({error.strerror})") from error

@@ -1,10 +1,10 @@
 """What a file of readings may say: one motor measured on a bench as in 5.4, or what its data sheet says."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from hilplant.bench.checked import Checked, Name, NotNegative, Positive
+from hilplant.bench.checked import Checked, Name, NotNegative, Positive, wrong
 from hilplant.bench.parts import Sourced
 
 #: Voltage [V] and current [A] of a motor that is held still.
@@ -30,6 +30,12 @@ class Armature(Checked):
     radius_m: Positive
 
 
+def _one_of(group: Checked, first: str, second: str) -> None:
+    """Refuse two ways to the same parameter: one would be left unused."""
+    if getattr(group, first) and getattr(group, second):
+        raise wrong(second, text=f"{first} and {second} tell the same; keep one")
+
+
 class BenchMode(Checked):
     """Readings of one brush.
 
@@ -43,6 +49,12 @@ class BenchMode(Checked):
     time_constant_s: Positive | None = None
     decay: Name | None = None
 
+    @model_validator(mode="after")
+    def _once(self) -> Self:
+        _one_of(self, "resistance_ohm", "blocked")
+        _one_of(self, "time_constant_s", "decay")
+        return self
+
 
 class BenchReadings(Sourced):
     """A motor on a bench. `run_down` is a table of time [s] and shaft speed [rad/s] with open terminals."""
@@ -55,6 +67,11 @@ class BenchReadings(Sourced):
     armature: Armature | None = None
     run_down: Name | None = None
     given: Given = Given()
+
+    @model_validator(mode="after")
+    def _once(self) -> Self:
+        _one_of(self, "armature", "run_down")
+        return self
 
 
 class SheetMode(Checked):

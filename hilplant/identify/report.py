@@ -5,12 +5,12 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from hilplant.failure import Failure
 from hilplant.identify.report_pictures import convergence_picture, correlation_picture, run_picture
 from hilplant.identify.result_files import Origin
 from hilplant.identify.starting_point import Known
 from hilplant.identify.three_stages import Identified
 from hilplant.identify.validation import Comparison
+from hilplant.recording.whole_file import write_text
 
 
 def write_report(path: Path, found: Identified, known: Known, origin: Origin, notes: list[str]) -> None:
@@ -26,10 +26,7 @@ def write_report(path: Path, found: Identified, known: Known, origin: Origin, no
         loader=PackageLoader("hilplant.identify", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
     text = environment.get_template("report.html.j2").render(_content(found, known, origin, notes))
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise Failure(f"{path}: cannot be written ({error.strerror})") from error
+    write_text(path, text)
 
 
 def _content(found: Identified, known: Known, origin: Origin, notes: list[str]) -> dict[str, Any]:

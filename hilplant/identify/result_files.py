@@ -8,10 +8,10 @@ import yaml
 
 from hilplant import resources
 from hilplant.bench import Bench
-from hilplant.failure import Failure
 from hilplant.identify.measurement import Measurement, Samples
 from hilplant.identify.three_stages import Identified
 from hilplant.models.records import Motor, unpack_parameters
+from hilplant.recording.whole_file import write_text
 
 
 class Origin(NamedTuple):
@@ -38,15 +38,8 @@ def write_bench(out: Path, found: Identified, origin: Origin) -> list[Path]:
     }
     head = f"# Identified from measurements, {origin.date}; `identified` says from which, and how sure it is.\n"
     for path, data in written.items():
-        _write(path, head + yaml.safe_dump(_plain(data), sort_keys=False, allow_unicode=True, width=120))
+        write_text(path, head + yaml.safe_dump(_plain(data), sort_keys=False, allow_unicode=True, width=120))
     return list(written)
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise Failure(f"{path}: cannot be written ({error.strerror})") from error
 
 
 def _facts(found: Identified, origin: Origin) -> dict[str, Any]:

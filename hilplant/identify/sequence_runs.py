@@ -10,6 +10,7 @@ import numpy as np
 
 from hilplant.failure import Failure
 from hilplant.identify.sequence import Player, Stage, advance, figure_5_4, informative, play, scenario_text
+from hilplant.recording.whole_file import write_text
 
 SEQUENCES: dict[str, Callable[[Sequence[float]], list[Stage]]] = {"figure-5-4": figure_5_4, "informative": informative}
 
@@ -52,10 +53,7 @@ def write_scenario(bench_name: str, stages: Sequence[Stage], out: Path) -> str:
 
     begun = play(stages, bench.step_ns / SECOND_NS, contact_after)
     _refuse_stuck(begun)
-    try:
-        out.write_text(scenario_text(begun, f"identification of {bench.name}"), encoding="utf-8")
-    except OSError as error:
-        raise Failure(f"{out}: cannot be written ({error.strerror})") from error
+    write_text(out, scenario_text(begun, f"identification of {bench.name}"))
     return f"{out}: {len(begun) - 1} stages, {begun[-1][0]:.4g} s; hilplant simulate {bench_name} {out} --out data.csv"
 
 

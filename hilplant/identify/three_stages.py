@@ -135,7 +135,8 @@ class _Computed:
 
 def refined(task: Task, outcome: Outcome) -> Solution:
     """Search on from where stage 2 ended; while that leaves the current unexplained, from the next start as well."""
-    expected, solutions = expected_noise(task.runs), list[Solution]()
+    expected = expected_noise(task.runs)
+    solutions: list[Solution] = []
     usual = np.array([parameter.usual for parameter in task.choice.parameters])
     for values in _starts(task, outcome):
         scale = np.maximum(np.abs(values), 0.01 * usual)

@@ -3,10 +3,10 @@
 The reduced load is the whole wiper, which has one degree of freedom: linkage, arms and blades follow the crank.
 With the crank's speed w, in the direction of motion s = +1 or -1, the torque at the crank is
 
-    M(angle) dw/dt + s [M'(angle) w^2/2 + G(angle) + V^2 drag(angle)] + D(angle) |w|
+    M(angle) dw/dt + s [M'(angle) w^2/2 + G(angle) + V^2 drag(angle)] + B(angle) |w|
         + sum of |J| F/n mu(|J w|) + brake,
 
-D the damping of the pivots, the sum over the n points of each blade, J a point's way by crank angle, F the force of its
+B the damping of the pivots, the sum over the n points of each blade, J a point's way by crank angle, F the force of its
 blade on the screen.
 """
 

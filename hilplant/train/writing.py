@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bench.sealed import seal
-from hilplant.failure import Failure
+from hilplant.recording.whole_file import write_text
 
 
 def sealed_text(content: Mapping[str, Any]) -> str:
@@ -20,23 +20,6 @@ def sealed_text(content: Mapping[str, Any]) -> str:
 def write_file(path: Path, content: Mapping[str, Any]) -> None:
     """Write a trained file; see :func:`sealed_text`."""
     write_text(path, sealed_text(content))
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a file as it is, whole or not at all.
-
-    Raises
-    ------
-    Failure
-        When it cannot be written.
-
-    """
-    passing = path.with_name(f"{path.name}.part")
-    try:
-        passing.write_text(text, encoding="utf-8", newline="\n")
-        passing.replace(path)
-    except OSError as error:
-        raise Failure(f"{path}: cannot be written ({error.strerror})") from error
 
 
 def data_hash(*arrays: NDArray[np.float64]) -> str:

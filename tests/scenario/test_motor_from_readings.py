@@ -110,6 +110,7 @@ def test_the_published_readings_give_the_published_averages(tmp_path: Path) -> N
         ({"kind": "guess"}, "kind 'guess'; known: bench, data_sheet"),
         ({"tolerance": -1.0}, "tolerance must be greater than or equal to 0"),
         ({"slow": sheet()["fast"], "fast": sheet()["slow"]}, "no-load speed must be above the slow one's"),
+        ({"given": sheet()["given"] | {"gear_efficiency": 0.7}}, "gear_efficiency is given, and the readings tell it"),
     ],
 )
 def test_what_makes_no_motor_is_told_with_its_file(tmp_path: Path, change: dict[str, Any], text: str) -> None:
@@ -117,6 +118,25 @@ def test_what_makes_no_motor_is_told_with_its_file(tmp_path: Path, change: dict[
         run(tmp_path, sheet() | change)
     assert text in str(told.value)
     assert not (tmp_path / "motor.yaml").exists()
+
+
+def test_two_ways_to_the_same_parameter_and_an_impossible_constant_are_told(tmp_path: Path) -> None:
+    readings = bench_readings(tmp_path)
+    with pytest.raises(Failure, match=r"readings\.yaml:\d+: armature and run_down tell the same; keep one"):
+        run(tmp_path, readings | {"armature": {"mass_kg": 0.3, "radius_m": 0.02}})
+    slow = readings["slow"] | {"time_constant_s": 0.008}
+    with pytest.raises(Failure, match="time_constant_s and decay tell the same"):
+        run(tmp_path, readings | {"slow": slow})
+    readings["slow"]["no_load"] = [[2.0, 20.0, 200.0], [3.0, 30.0, 300.0]]
+    with pytest.raises(Failure, match=r"slow_constant_v_s comes out as .* not above 0"):
+        run(tmp_path, readings | {"given": {"damping_n_m_s": 0.0}})
+
+
+def test_an_efficiency_above_1_within_the_tolerance_of_the_sheet_is_1(tmp_path: Path) -> None:
+    readings = sheet()
+    for mode in ("slow", "fast"):
+        readings[mode]["stall_torque_n_m"] *= 1.03 / 0.6
+    assert run(tmp_path, readings)["gear_efficiency"] == 1.0
 
 
 def test_a_negative_friction_and_a_missing_table_are_told(tmp_path: Path) -> None:
