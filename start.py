@@ -102,7 +102,7 @@ def run_all_tests(arguments: list[str]) -> int:
     }
     with tempfile.TemporaryDirectory(prefix="hilplant-test-") as folder:
         report = Path(folder) / "vcan.xml"
-        on_vcan = ["-m", "hilplant.bus.private_vcan", str(PYTHON), *pytest, "-m", "vcan", f"--junitxml={report}"]
+        on_vcan = ["-m", "hilplant.vcan.private_vcan", str(PYTHON), *pytest, "-m", "vcan", f"--junitxml={report}"]
         passed = step("tests on SocketCAN", [*on_vcan, "tests/vcan"])
         ran, skipped = count(report)
     results[f"tests on SocketCAN ({ran} run, {skipped} skipped)"] = passed and ran > 0 and skipped == 0

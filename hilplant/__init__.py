@@ -5,18 +5,18 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hilplant.bench.assembly import Bench, load_bench
-    from hilplant.bench.problems import BenchError
-    from hilplant.simulation import Result, simulate
+    from hilplant.checked_yaml.problems import BenchError
+    from hilplant.simulation.run import Result, simulate
 
     __version__: str
 
 #: Where each public name comes from; loaded on first use, because the compiler alone takes half a second.
 _HOMES = {
     "Bench": "hilplant.bench.assembly",
-    "BenchError": "hilplant.bench.problems",
-    "Result": "hilplant.simulation",
+    "BenchError": "hilplant.checked_yaml.problems",
+    "Result": "hilplant.simulation.run",
     "load_bench": "hilplant.bench.assembly",
-    "simulate": "hilplant.simulation",
+    "simulate": "hilplant.simulation.run",
 }
 
 __all__ = ["Bench", "BenchError", "Result", "__version__", "load_bench", "simulate"]

@@ -1,5 +1,5 @@
 """Makes `python -m hilplant` the same as `hilplant`."""
 
-from hilplant.cli import main
+from hilplant.cli.main import main
 
 main()

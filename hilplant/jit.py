@@ -42,11 +42,11 @@ def _writable(folder: Path) -> bool:
 
 
 #: Changes when any model's source or the compiler changes; recordings carry it.
-MODELS_HASH = _sources_hash("models", "surrogates")
+MODELS_HASH = _sources_hash("models")
 
 
 #: Where compiled functions are written and called. All of these decide whether what is in the cache still holds.
-ROOMS = ("models", "surrogates", "control", "train")
+ROOMS = ("models", "control", "train")
 
 
 def _cache_folder() -> Path:

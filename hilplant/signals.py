@@ -76,8 +76,13 @@ INPUTS = (
     Signal("brake_torque_n_m", "N m", 0.0, 1000.0, "dry friction torque added at the crank; a large one blocks it"),
     *(
         Signal(
-            f"{side}_screen", "", -1.0, 1.0, f"wetness under the {side} blade; below 0 it is that of `screen`",
-            default=-1.0, names=(("same", -1.0), *SCREENS),
+            f"{side}_screen",
+            "",
+            -1.0,
+            1.0,
+            f"wetness under the {side} blade; below 0 it is that of `screen`",
+            default=-1.0,
+            names=(("same", -1.0), *SCREENS),
         )
         for side in SIDES
     ),

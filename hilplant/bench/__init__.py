@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from hilplant.bench.problems import BenchError, Problem
+from hilplant.checked_yaml.problems import BenchError, Problem
 
 if TYPE_CHECKING:
     from hilplant.bench.assembly import Bench, check_bench, load_bench

@@ -16,12 +16,12 @@ from hilplant.bench.ecu_messages import EcuMessages, assemble_ecu_messages
 from hilplant.bench.ecu_side import EcuSide, build_ecu_side
 from hilplant.bench.inheritance import read_bench_file
 from hilplant.bench.mapping import MappedMessage
-from hilplant.bench.place import Place
 from hilplant.bench.plant import Plant, assemble_plant
-from hilplant.bench.problems import BenchError, Problem
-from hilplant.bench.reading import Description, Reading
 from hilplant.bench.values import signal_values
 from hilplant.bus.codec import ReceivedMessage, SentMessage
+from hilplant.checked_yaml.place import Place
+from hilplant.checked_yaml.problems import BenchError, Problem
+from hilplant.checked_yaml.reading import Description, Reading
 from hilplant.models.park_phase import phase_at_rest
 from hilplant.models.park_switch import cam_closed
 from hilplant.models.records import Parameters, State, pack

@@ -7,12 +7,12 @@ from typing import Any, TypeVar
 from hilplant.bench.database import Database, read_database
 from hilplant.bench.description import BusSection, InterfaceSection, ReceiveEntry, SendEntry
 from hilplant.bench.mapping import MappedMessage, map_message
-from hilplant.bench.place import Place
 from hilplant.bench.timing import sending, timeout_ns
 from hilplant.bench.values import signal_values
 from hilplant.bus.codec import ReceivedMessage, SentMessage, received_message, sent_message
 from hilplant.bus.mapping import MappingError
 from hilplant.bus.transport import wrong_interface
+from hilplant.checked_yaml.place import Place
 from hilplant.signals import INPUT_INDEX, INPUTS, PUBLISHED, Signal
 
 RELAYS_OPEN = {"relay_on": False, "relay_fast": False}

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from hilplant.bench.place import Place
-from hilplant.bench.problems import Problem, suggestion
-from hilplant.bench.reading import shown
 from hilplant.bus.database import DatabaseError, load_database
+from hilplant.checked_yaml.place import Place
+from hilplant.checked_yaml.problems import Problem, suggestion
+from hilplant.checked_yaml.reading import shown
 
 _LINE = re.compile(r"\bat line (\d+)")
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from hilplant.bench.checked import Checked, Name, NotNegative, Real, wrong
+from hilplant.checked_yaml.checked import Checked, Name, NotNegative, Real, wrong
 from hilplant.units import TURN_RAD
 
 Group = dict[str, Any]

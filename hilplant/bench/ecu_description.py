@@ -4,8 +4,8 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from hilplant.bench.checked import Checked, NotNegative, Positive, wrong
 from hilplant.bench.description import Messages
+from hilplant.checked_yaml.checked import Checked, NotNegative, Positive, wrong
 
 SixPauses = Annotated[tuple[Positive, ...], Field(strict=False, min_length=6, max_length=6)]
 Count = Annotated[int, Field(ge=1)]

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from hilplant.bench.bus import Bus, receive_entry, send_entry
 from hilplant.bench.database import Database
-from hilplant.bench.place import Place
 from hilplant.bus.codec import ReceivedMessage, SentMessage
+from hilplant.checked_yaml.place import Place
 from hilplant.signals import ECU_HEARD, ECU_SAID, ECU_STATUS, STALK
 
 _NO_STEP_NS = 1  # the ECU sends when it decides, so every period will do

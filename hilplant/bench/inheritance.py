@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from hilplant.bench.reading import Reading
-from hilplant.bench.yaml_reader import Document, Location
+from hilplant.checked_yaml.reading import Reading
+from hilplant.checked_yaml.yaml_reader import Document, Location
 
 
 def read_bench_file(reading: Reading, path: Path) -> Document:

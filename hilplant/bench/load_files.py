@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from hilplant.bench.checked import Checked, Name, NotNegative, Positive, Real, wrong
+from hilplant.checked_yaml.checked import Checked, Name, NotNegative, Positive, Real, wrong
 
 TORQUE_FORMAT = "hilplant torque network 1"
 POLYNOMIAL_FORMAT = "hilplant no-load polynomial 1"
@@ -81,7 +81,7 @@ class TorqueFile(TrainedFile):
         return self
 
     def numbers(self) -> NDArray[np.float64]:
-        """Return the row that :mod:`hilplant.surrogates.torque_network` reads, scaling contained in the weights."""
+        """Return the row that :mod:`hilplant.models.torque_network` reads, scaling contained in the weights."""
         low, high = self.scaling.speed_rad_s
         hidden, output = np.array(self.hidden), np.array(self.output)
         speed_scale = 2.0 / (high - low)

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from hilplant.bench.description import ReceiveEntry, SendEntry, SignalEntry
-from hilplant.bench.place import Place
-from hilplant.bench.problems import suggestion
 from hilplant.bus.mapping import MappingError, SignalMapping, link
 from hilplant.bus.protection import Protection, ProtectionError
+from hilplant.checked_yaml.place import Place
+from hilplant.checked_yaml.problems import suggestion
 from hilplant.signals import Signal
 
 

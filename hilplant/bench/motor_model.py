@@ -6,12 +6,12 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from hilplant.bench.checked import Checked, Name
 from hilplant.bench.motor_network_file import FORMAT, Floats, MotorNetworkFile
 from hilplant.bench.parameter_hash import motor_hash
 from hilplant.bench.parts import MotorFile
-from hilplant.bench.place import Place
-from hilplant.bench.sealed import sealed_file
+from hilplant.checked_yaml.checked import Checked, Name
+from hilplant.checked_yaml.checksummed import sealed_file
+from hilplant.checked_yaml.place import Place
 from hilplant.models.motor_choice import MOTORS
 from hilplant.units import SECOND_NS
 

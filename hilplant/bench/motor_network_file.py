@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from hilplant.bench.checked import Checked, Name, NotNegative, Positive, Real, wrong
 from hilplant.bench.load_files import TrainedFile
+from hilplant.checked_yaml.checked import Checked, Name, NotNegative, Positive, Real, wrong
 
 #: The first line's value in every such file.
 FORMAT = "hilplant motor network 1"
@@ -63,7 +63,7 @@ class PathSection(Checked):
         return self
 
     def row(self) -> Floats:
-        """Return the numbers in the order of :mod:`hilplant.surrogates.narx`, scaling folded in."""
+        """Return the numbers in the order of :mod:`hilplant.models.narx`, scaling folded in."""
         ranges = self.range.array()
         gain = 2.0 / (ranges[:, 1] - ranges[:, 0])
         shift = -ranges[:, 0] * gain - 1.0

@@ -9,10 +9,10 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
-from hilplant.bench.checked import Checked
 from hilplant.bench.parts import LinkageFile, MotorFile
 from hilplant.bench.plant_description import BladeEntry
 from hilplant.bench.screen_parts import ScreenFile
+from hilplant.checked_yaml.checked import Checked
 
 #: Keys that say something about the numbers, or limit them, and change nothing in the physics.
 _NOT_PHYSICS = frozenset(

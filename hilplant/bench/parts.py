@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from hilplant.bench.checked import Checked, Name, NotNegative, Positive, Real, wrong
+from hilplant.checked_yaml.checked import Checked, Name, NotNegative, Positive, Real, wrong
 from hilplant.mechanics.assembly import Description
 from hilplant.mechanics.transmission import LEAST_TRANSMISSION_DEG
 from hilplant.models.records import Brush, Motor

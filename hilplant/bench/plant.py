@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from hilplant.bench.load_files import PolynomialFile, TorqueFile
 from hilplant.bench.motor_model import motor_model, row_of_networks
 from hilplant.bench.parts import MotorFile
-from hilplant.bench.place import Place
 from hilplant.bench.plant_description import (
     AnyLoad,
     BladeEntry,
@@ -22,6 +21,7 @@ from hilplant.bench.plant_description import (
 from hilplant.bench.screen_parts import ScreenFile
 from hilplant.bench.trained_load import Around, TrainedLoad, keeps_its_bounds, read_trained_load
 from hilplant.bench.wiper import SIDES, Mechanics, Surroundings, read_mechanics
+from hilplant.checked_yaml.place import Place
 from hilplant.failure import Failure
 from hilplant.mechanics.coefficients import Aerodynamics, check_aerodynamics
 from hilplant.models.circuit import CIRCUITS

@@ -4,8 +4,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from hilplant.bench.checked import Checked, Name, NotNegative, wrong
 from hilplant.bench.parts import WithAssumptions
+from hilplant.checked_yaml.checked import Checked, Name, NotNegative, wrong
 
 Group = dict[str, Any]
 Angle = Annotated[float, Field(gt=0, lt=360)]

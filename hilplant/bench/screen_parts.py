@@ -4,8 +4,8 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from hilplant.bench.checked import NotNegative, Positive, Real, wrong
 from hilplant.bench.parts import Sourced, WithAssumptions
+from hilplant.checked_yaml.checked import NotNegative, Positive, Real, wrong
 from hilplant.models.records import Friction
 
 QuarterTurn = Annotated[float, Field(ge=-1.5708, le=1.5708)]

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from hilplant.bench.assembly import Bench
-from hilplant.bench.checked import Checked
 from hilplant.bench.parts import assumed_in
 from hilplant.bench.plant import Plant
 from hilplant.bench.plant_description import NetworkLoad, WholeWiper
 from hilplant.bench.wiper import SIDES
+from hilplant.checked_yaml.checked import Checked
 from hilplant.mechanics.design_points import projection_loss
 from hilplant.models.circuit import CIRCUITS
 from hilplant.models.motor_choice import NARX

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from hilplant.bench.description import ReceiveEntry, SendEntry
-from hilplant.bench.place import Place
-from hilplant.bench.problems import suggestion
 from hilplant.bus.codec import Timing
+from hilplant.checked_yaml.place import Place
+from hilplant.checked_yaml.problems import suggestion
 from hilplant.signals import PUBLISHED, Signal
 from hilplant.units import MILLISECOND_NS
 

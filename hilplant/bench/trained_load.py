@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 
 from hilplant.bench.load_files import POLYNOMIAL_FORMAT, TORQUE_FORMAT, PolynomialFile, TorqueFile, TrainedFile
 from hilplant.bench.parameter_hash import linkage_hash, load_hash
-from hilplant.bench.place import Place
 from hilplant.bench.plant_description import AnyLoad, BladeEntry, NetworkLoad, PolynomialLoad
 from hilplant.bench.screen_parts import ScreenFile
-from hilplant.bench.sealed import sealed_file
 from hilplant.bench.wiper import Mechanics
+from hilplant.checked_yaml.checksummed import sealed_file
+from hilplant.checked_yaml.place import Place
 from hilplant.models.records import NO_NETWORKS, Parameters
-from hilplant.surrogates.samples import network_torques, physical_torques
-from hilplant.surrogates.torque_network import HIGHEST, LOWEST
+from hilplant.models.torque_network import HIGHEST, LOWEST
+from hilplant.models.torque_samples import network_torques, physical_torques
 from hilplant.units import TURN_RAD
 
 Trained = TypeVar("Trained", bound=TrainedFile)

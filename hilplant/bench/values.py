@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from hilplant.bench.place import Place
-from hilplant.bench.problems import suggestion
+from hilplant.checked_yaml.place import Place
+from hilplant.checked_yaml.problems import suggestion
 from hilplant.signals import INPUT_INDEX, INPUTS, Signal
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from hilplant.bench.assembly import load_bench
-from hilplant.bench.problems import BenchError
 from hilplant.bench.summary import summarise, summary_lines
+from hilplant.checked_yaml.problems import BenchError
 
 
 @dataclass(frozen=True, slots=True)

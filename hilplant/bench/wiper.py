@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bench.parts import ArmSection, BladeSection, LinkageFile
-from hilplant.bench.place import Place
+from hilplant.checked_yaml.place import Place
 from hilplant.failure import Failure
 from hilplant.mechanics import collision
 from hilplant.mechanics.arms import arm_points

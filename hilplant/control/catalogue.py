@@ -25,7 +25,7 @@ FUZZY_GAINS = {"hebb": 0.5, "error_hebb": 1.5, "quadratic": 0.5}
 #: K of each rule without overshoot, Table 7-5.
 CALM_GAINS = {"hebb": 0.08, "error_hebb": 0.2, "quadratic": 0.05}
 
-#: Gains found by the search of :mod:`hilplant.studies.control_search` (seed 1): K or the fuzzy gain, learning
+#: Gains found by the search of :mod:`hilplant.thesis.control_search` (seed 1): K or the fuzzy gain, learning
 #: rates (integral, proportional, derivative), initial weights; "calm" has no overshoot, "quick" at most 0.6 rad/s.
 SEARCHED: dict[tuple[str, str], tuple[float, ...]] = {
     ("hebb", "calm"): (6.259, 0.04469, 0.02958, 0.9878, 2.291, 562.8, 9.204),

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from rich.console import Console
 
+from hilplant.cli.display import Scene, watch
 from hilplant.demo.plant import Failed, Message, Started, serve_demo
 from hilplant.demo.sequence import WHOLE_S, Sequence, sequence
 from hilplant.demo.summary import summarise
-from hilplant.display import Scene, watch
 from hilplant.ecu.stalk import stalk_at, stalk_words
 from hilplant.failure import Failure
 from hilplant.runtime.ring import Ring

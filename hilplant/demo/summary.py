@@ -6,8 +6,8 @@ from pathlib import Path
 from rich.console import Console
 
 from hilplant.demo.figures import Figures, SpeedFigures, Stop, figures
+from hilplant.plots.recording import plot_recording
 from hilplant.recording.export import signal_columns
-from hilplant.recording.plot import plot_recording
 from hilplant.recording.reader import read_recording
 from hilplant.runtime.server import Summary
 

@@ -129,10 +129,7 @@ def _arrivals() -> list[Transition]:
     return [
         *(Transition((wait,), when.PARK, target) for wait, target in WAIT_FOR.values()),
         Transition((Phase.WASH_WIPES,), done & master(Master.OFF), Phase.OFF),
-        *(
-            Transition(wiped, done & interval(number), pause)
-            for number, pause in zip(INTERVALS, PAUSES, strict=True)
-        ),
+        *(Transition(wiped, done & interval(number), pause) for number, pause in zip(INTERVALS, PAUSES, strict=True)),
     ]
 
 

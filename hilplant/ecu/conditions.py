@@ -43,8 +43,7 @@ WASH = Condition("wash", lambda view: view.stalk.wash)
 NO_WASH = Condition("wash released", lambda view: not view.stalk.wash)
 WANTED_OR_RESTED = Condition(
     "(wanted or at rest for long)",
-    lambda view: view.stalk.demands
-    or (view.in_phase_s >= view.settings.settle_s and not view.settings.rests_open),
+    lambda view: view.stalk.demands or (view.in_phase_s >= view.settings.settle_s and not view.settings.rests_open),
 )
 
 PARK = Condition("park reached", lambda view: view.senses.arrived)

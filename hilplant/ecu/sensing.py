@@ -50,9 +50,7 @@ def _watch_contact(before: Senses, contact: bool | None, now_s: float, settings:
         return before._replace(contact=None, opened_s=never, closed_s=never, away=False, arrived=False)
     if contact:
         closed_s = min(before.closed_s, now_s)
-        return before._replace(
-            contact=True, opened_s=never, closed_s=closed_s, away=False, arrived=before.away
-        )
+        return before._replace(contact=True, opened_s=never, closed_s=closed_s, away=False, arrived=before.away)
     opened_s = min(before.opened_s, now_s)
     away = before.away or now_s - opened_s >= settings.debounce_s
     return before._replace(contact=False, opened_s=opened_s, closed_s=never, away=away, arrived=False)

@@ -15,13 +15,13 @@ from hilplant.bench import Bench
 from hilplant.failure import Failure
 from hilplant.identify.experiment import Run
 from hilplant.identify.local_search import Solution
-from hilplant.identify.measurement import Samples
 from hilplant.identify.parameters import Choice, search_space
 from hilplant.identify.places import PLACE
 from hilplant.identify.residuals import Problem, directions
 from hilplant.identify.run_of_data import make_run
 from hilplant.identify.twin import CLEAN, Condition, played, spoilt
 from hilplant.identify.uncertainty import LEAST, NORMAL_95, Verdict
+from hilplant.measurements.measurement import Samples
 from hilplant.models.load import LOADS
 from hilplant.signals import INPUT_INDEX
 from hilplant.units import SECOND_NS

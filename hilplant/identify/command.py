@@ -6,15 +6,15 @@ from typing import Any, NamedTuple
 import typer
 
 from hilplant.failure import Failure
-from hilplant.identify.bench_measurements import quantity
-from hilplant.identify.checks import examine
-from hilplant.identify.columns import parse_columns
-from hilplant.identify.files import Origin
 from hilplant.identify.first_stage import ModeResult, first_stage
-from hilplant.identify.measurement import Measurement
-from hilplant.identify.park import rising_edges
-from hilplant.identify.preparation import Preparation, read_measurement
 from hilplant.identify.transfer_function import Equivalent
+from hilplant.measurements.checks import examine
+from hilplant.measurements.columns import parse_columns
+from hilplant.measurements.files import Origin
+from hilplant.measurements.measurement import Measurement
+from hilplant.measurements.park import rising_edges
+from hilplant.measurements.preparation import Preparation, read_measurement
+from hilplant.motor_bench.bench_measurements import quantity
 
 
 class Wish(NamedTuple):

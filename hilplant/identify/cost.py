@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.identify.experiment import Run, samples_of, simulate_run
-from hilplant.identify.measurement import Samples
 from hilplant.identify.parameters import Choice
+from hilplant.measurements.measurement import Samples
 
 
 class Parts(NamedTuple):

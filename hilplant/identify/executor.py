@@ -11,7 +11,7 @@ import numpy as np
 
 from hilplant.failure import Failure
 from hilplant.identify.cost import Cost
-from hilplant.identify.measurement import Samples
+from hilplant.measurements.measurement import Samples
 
 
 class Executor(Protocol):

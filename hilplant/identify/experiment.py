@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hilplant.batch import simulate_batch
-from hilplant.identify.measurement import Mask, Samples
 from hilplant.identify.places import PLACE, STATE_PLACE
+from hilplant.measurements.measurement import Mask, Samples
+from hilplant.simulation.batch import simulate_batch
 from hilplant.units import TURN_RAD
 
 COLUMNS = ("current_a", "crank_angle_rad", "park_contact")

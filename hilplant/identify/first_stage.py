@@ -16,11 +16,6 @@ import numpy as np
 from uncertainties import correlated_values
 
 from hilplant.failure import Failure
-from hilplant.identify.alignment import voltage_steps
-from hilplant.identify.bench_measurements import Friction, back_emf_constant, mean_of, no_load_friction
-from hilplant.identify.bench_measurements import SteadyRun as _Turn
-from hilplant.identify.measurement import Mask, Measurement, Samples, running
-from hilplant.identify.park import rising_edges
 from hilplant.identify.srivc import Fit, Stretch, fit
 from hilplant.identify.transfer_function import (
     Coefficients,
@@ -31,6 +26,11 @@ from hilplant.identify.transfer_function import (
     coefficients,
     load_constant,
 )  # fmt: skip
+from hilplant.measurements.alignment import voltage_steps
+from hilplant.measurements.measurement import Mask, Measurement, Samples, running
+from hilplant.measurements.park import rising_edges
+from hilplant.motor_bench.bench_measurements import Friction, back_emf_constant, mean_of, no_load_friction
+from hilplant.motor_bench.bench_measurements import SteadyRun as _Turn
 
 #: How much of the data is used around each step: long for the electrical time constant, short for the load [s].
 BEFORE_S, WINDOW_S = 0.01, 0.04

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.identify.local_search import Solution
-from hilplant.identify.measurement import Samples
 from hilplant.identify.parameters import Choice
 from hilplant.identify.uncertainty import Spread
+from hilplant.measurements.measurement import Samples
 from hilplant.models.friction import coefficient
 from hilplant.models.records import unpack_parameters
 from hilplant.signals import INPUT_INDEX, SCREENS

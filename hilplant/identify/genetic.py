@@ -12,7 +12,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from hilplant.identify.measurement import Samples
+from hilplant.measurements.measurement import Samples
 
 Evaluate = Callable[[Samples], Samples]
 Matrix = NDArray[np.float64]

@@ -15,8 +15,6 @@ from hilplant.identify.executor import Executor, here, on_cluster
 from hilplant.identify.experiment import Run
 from hilplant.identify.genetic import Settings
 from hilplant.identify.journal import Journal
-from hilplant.identify.measurement import Samples
-from hilplant.identify.named_data import Named, read_named
 from hilplant.identify.optimisers import budget, optimiser
 from hilplant.identify.parameters import BY_NAME, Choice, chosen
 from hilplant.identify.progress_display import ProgressDisplay
@@ -24,6 +22,8 @@ from hilplant.identify.result_files import Origin, write_bench
 from hilplant.identify.run_of_data import make_run
 from hilplant.identify.starting_point import Known, starting_point
 from hilplant.identify.three_stages import EXPLAINED, Identified, Task, identify
+from hilplant.measurements.measurement import Samples
+from hilplant.measurements.named_data import Named, read_named
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from hilplant.failure import Failure
-from hilplant.identify.measurement import Samples
+from hilplant.measurements.measurement import Samples
 
 
 class Journal:

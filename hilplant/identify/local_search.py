@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from hilplant.identify.measurement import Samples
 from hilplant.identify.parameters import search_space
 from hilplant.identify.residuals import Noise, Problem, directions
+from hilplant.measurements.measurement import Samples
 
 Matrix = NDArray[np.float64]
 

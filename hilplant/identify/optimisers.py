@@ -11,7 +11,7 @@ import numpy as np
 
 from hilplant.failure import Failure
 from hilplant.identify.genetic import Evaluate, Outcome, Progress, Settings, Space, genetic
-from hilplant.identify.measurement import Samples
+from hilplant.measurements.measurement import Samples
 
 Told = Callable[[Progress], None]
 Search = Callable[[Evaluate, Space, Settings, int, Told], Outcome]

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.failure import Failure
-from hilplant.identify.measurement import Samples
 from hilplant.identify.places import PLACE
+from hilplant.measurements.measurement import Samples
 
 #: (5.22): the search goes from half to twice of what is known; for inductances, which stage 1 tells badly, from a
 #: quarter to four times, and for friction too, whose published sets (Tables 4-1, 4-2, 5-8) differ as much.

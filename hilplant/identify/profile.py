@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.identify.local_search import Solution
-from hilplant.identify.measurement import Mask, Samples
 from hilplant.identify.uncertainty import NORMAL_95, RISE_95, Spread, Verdict
+from hilplant.measurements.measurement import Mask, Samples
 
 Matrix = NDArray[np.float64]
 

@@ -5,12 +5,12 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from hilplant.atomic_write import write_text
 from hilplant.identify.report_pictures import convergence_picture, correlation_picture, run_picture
 from hilplant.identify.result_files import Origin
 from hilplant.identify.starting_point import Known
 from hilplant.identify.three_stages import Identified
 from hilplant.identify.validation import Comparison
-from hilplant.recording.whole_file import write_text
 
 
 def write_report(path: Path, found: Identified, known: Known, origin: Origin, notes: list[str]) -> None:

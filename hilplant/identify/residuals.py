@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.identify.experiment import Run, simulate_run
-from hilplant.identify.measurement import Samples
 from hilplant.identify.parameters import Choice
+from hilplant.measurements.measurement import Samples
 
 #: First steps of the finite differences, in units of an unknown's scale, and the longest of later ones.
 FIRST_STEP, LONGEST_STEP = 1e-4, 0.05

@@ -7,11 +7,11 @@ import numpy as np
 import yaml
 
 from hilplant import resources
+from hilplant.atomic_write import write_text
 from hilplant.bench import Bench
-from hilplant.identify.measurement import Measurement, Samples
 from hilplant.identify.three_stages import Identified
+from hilplant.measurements.measurement import Measurement, Samples
 from hilplant.models.records import Motor, unpack_parameters
-from hilplant.recording.whole_file import write_text
 
 
 class Origin(NamedTuple):

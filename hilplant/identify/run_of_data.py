@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from hilplant.bench import Bench
 from hilplant.failure import Failure, Unfit
 from hilplant.identify.experiment import Run, Start
-from hilplant.identify.measurement import Measurement, Samples, running
-from hilplant.identify.outliers import near_steps, spikes
-from hilplant.identify.park import rising_edges
+from hilplant.measurements.measurement import Measurement, Samples, running
+from hilplant.measurements.outliers import near_steps, spikes
+from hilplant.measurements.park import rising_edges
 from hilplant.signals import INPUT_INDEX
 from hilplant.units import SECOND_NS, TURN_RAD
 

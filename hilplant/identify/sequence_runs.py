@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from hilplant.atomic_write import write_text
 from hilplant.failure import Failure
 from hilplant.identify.sequence import Player, Stage, advance, figure_5_4, informative, play, scenario_text
-from hilplant.recording.whole_file import write_text
 
 SEQUENCES: dict[str, Callable[[Sequence[float]], list[Stage]]] = {"figure-5-4": figure_5_4, "informative": informative}
 

@@ -20,8 +20,8 @@ from scipy.optimize import least_squares
 from scipy.signal import BadCoefficients, cont2discrete, lfilter
 
 from hilplant.failure import Failure
-from hilplant.identify.measurement import Mask, Samples
 from hilplant.identify.transfer_function import TransferFunction
+from hilplant.measurements.measurement import Mask, Samples
 
 #: Rounds until the relative change of all coefficients is below the tolerance; after the cap a search takes over.
 ROUNDS, TOLERANCE = 40, 1e-7

@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from hilplant.failure import Failure
-from hilplant.identify.bench_measurements import quantity
 from hilplant.identify.first_stage import ModeResult, first_stage
-from hilplant.identify.measurement import Measurement, Samples
 from hilplant.identify.parameters import Choice
+from hilplant.measurements.measurement import Measurement, Samples
+from hilplant.motor_bench.bench_measurements import quantity
 
 
 class Known(NamedTuple):

@@ -15,13 +15,13 @@ from hilplant.identify.experiment import Run
 from hilplant.identify.forces import FrictionForce, friction_forces
 from hilplant.identify.genetic import Evaluate, Outcome, Progress, Settings, Space, order_of
 from hilplant.identify.local_search import Solution, search
-from hilplant.identify.measurement import Samples
 from hilplant.identify.optimisers import optimiser
 from hilplant.identify.parameters import Choice, search_space
 from hilplant.identify.profile import Interval, profile
 from hilplant.identify.residuals import Problem, expected_noise
 from hilplant.identify.uncertainty import Spread, Verdict, spread, verdicts
 from hilplant.identify.validation import Comparison, compare
+from hilplant.measurements.measurement import Samples
 from hilplant.models.records import MODEL_AT
 
 _TABLE_5_7 = Settings()

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bench import Bench
-from hilplant.identify.measurement import Measurement, Samples
 from hilplant.identify.places import STATE_PLACE
 from hilplant.identify.sequence import OFF, Stage, play
+from hilplant.measurements.measurement import Measurement, Samples
 from hilplant.models.plant import tick
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import SECOND_NS, TURN_RAD

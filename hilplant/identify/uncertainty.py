@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.identify.local_search import Solution
-from hilplant.identify.measurement import Samples
 from hilplant.identify.parameters import search_space
+from hilplant.measurements.measurement import Samples
 
 Matrix = NDArray[np.float64]
 

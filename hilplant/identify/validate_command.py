@@ -6,9 +6,9 @@ from typing import Any
 import typer
 
 from hilplant.bench import load_bench
-from hilplant.identify.named_data import read_named
 from hilplant.identify.run_of_data import make_run
 from hilplant.identify.validation import compare
+from hilplant.measurements.named_data import read_named
 
 Bounds = tuple[float | None, float | None]
 

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from hilplant.identify.experiment import Run, simulate_run
 from hilplant.identify.local_search import search
-from hilplant.identify.measurement import Samples
 from hilplant.identify.parameters import Choice
 from hilplant.identify.residuals import Problem, edge_errors_s, expected_noise
+from hilplant.measurements.measurement import Samples
 
 
 class RunError(NamedTuple):

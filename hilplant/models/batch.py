@@ -1,4 +1,4 @@
-"""The step for one of many parameter sets; :mod:`hilplant.batch` shares them out among the processors."""
+"""The step for one of many parameter sets; :mod:`hilplant.simulation.batch` shares them out among the processors."""
 
 from typing import Any
 

@@ -18,8 +18,8 @@ from hilplant.models.friction import coefficient
 from hilplant.models.lookup import Interval, derivative, value
 from hilplant.models.polynomial import torque_over_speed
 from hilplant.models.records import Blade, Inputs, Load, Parameters
-from hilplant.surrogates.torque_network import NETWORK as BY_NETWORK
-from hilplant.surrogates.torque_network import Tangent, reaches
+from hilplant.models.torque_network import NETWORK as BY_NETWORK
+from hilplant.models.torque_network import Tangent, reaches
 from hilplant.units import TURN_RAD
 
 #: Names of the models; ``Load.model`` is the place in this list.
@@ -93,9 +93,7 @@ def resist_as(mode: float, tangent: Tangent, crank: Crank, parameters: Parameter
 
 
 @compiled
-def by_speed(
-    crank_angle_rad: float, crank_speed_rad_s: float, load: Load, inputs: Inputs, networks: Any
-) -> Resistance:
+def by_speed(crank_angle_rad: float, crank_speed_rad_s: float, load: Load, inputs: Inputs, networks: Any) -> Resistance:
     """Return the loads that have no tables: none, and the polynomial as torque over speed.
 
     The quotient cannot become negative (footnote 16 of Dooner 2016: the load must not drive the motor), so that the

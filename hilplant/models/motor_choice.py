@@ -11,9 +11,7 @@ from typing import NamedTuple
 from hilplant.jit import compiled
 from hilplant.models.armature import Motion
 from hilplant.models.load import Resistance
-from hilplant.models.records import State
-from hilplant.models.shaft import Train, drive_at, turn
-from hilplant.surrogates.narx import (
+from hilplant.models.narx import (
     FAST_BRUSH,
     NETWORK,
     NO_BRUSH,
@@ -27,6 +25,8 @@ from hilplant.surrogates.narx import (
     predict,
     within,
 )
+from hilplant.models.records import State
+from hilplant.models.shaft import Train, drive_at, turn
 
 #: Names of the models of the motor; ``Parameters.motor_model`` is the place in this list.
 MOTORS = ("ode", "narx")

@@ -21,8 +21,8 @@ from hilplant.models.records import (
 )
 from hilplant.models.shaft import Train, load_torque
 from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
-from hilplant.surrogates.torque_network import NETWORK as BY_NETWORK
-from hilplant.surrogates.torque_network import NO_TANGENT, PHYSICAL, load_in_charge, network_tangent
+from hilplant.models.torque_network import NETWORK as BY_NETWORK
+from hilplant.models.torque_network import NO_TANGENT, PHYSICAL, load_in_charge, network_tangent
 
 
 @compiled
@@ -83,7 +83,12 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
 
 @compiled
 def measured(  # noqa: PLR0913, PLR0917
-    motion: Motion, crank: Crank, load: Resistance, park_contact: float, guard: float, train: Train,
+    motion: Motion,
+    crank: Crank,
+    load: Resistance,
+    park_contact: float,
+    guard: float,
+    train: Train,
     motor_mode: float,
 ) -> Outputs:
     """Return what can be seen of the plant at this instant."""

@@ -142,7 +142,7 @@ class State(NamedTuple):
     last_current_a: float = 0.0
     last_speed_rad_s: float = 0.0
     last_brush: float = 0.0  # whose these four are: 1 slow, 2 fast, 0 nothing that the network could go on from
-    motor_mode: float = 0.0  # who moved the motor, the place in surrogates/narx.py MODES
+    motor_mode: float = 0.0  # who moved the motor, the place in models/narx.py MODES
     load_mode: float = 0.0  # who gave the torque, the place in signals.IN_CHARGE
 
 
@@ -243,6 +243,4 @@ def unpack_state(row: Any) -> State:
 @compiled
 def unpack_inputs(row: Any) -> Inputs:
     """Name the elements of a row of inputs."""
-    return Inputs(
-        row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], row[9], row[10], row[11]
-    )
+    return Inputs(row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7], row[8], row[9], row[10], row[11])

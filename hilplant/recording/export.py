@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.atomic_write import whole_file
 from hilplant.failure import Failure
 from hilplant.recording import frame_logs
 from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, STATUS_COLUMNS
 from hilplant.recording.mf4_frames import append_frames
 from hilplant.recording.reader import Recording, read_recording
 from hilplant.recording.tables import TableError, check_ending, fill_table
-from hilplant.recording.whole_file import whole_file
 from hilplant.signals import INPUTS, OUTPUTS, STATUS
 from hilplant.units import SECOND_NS
 

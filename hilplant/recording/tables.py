@@ -8,8 +8,8 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from hilplant.atomic_write import whole_file
 from hilplant.failure import Failure
-from hilplant.recording.whole_file import whole_file
 
 Columns = Mapping[str, NDArray[np.float64]]
 

@@ -115,9 +115,7 @@ def ended_by_signals(stop: StopRequest) -> Iterator[None]:
 def link_settings(loop: LoopSettings) -> LinkSettings:
     """Return how the bench wants its interface treated."""
     first_ms, longest_ms = loop.reopen_ms
-    return LinkSettings(
-        loop.frames_per_tick, loop.queue_frames, first_ms * MILLISECOND_NS, longest_ms * MILLISECOND_NS
-    )
+    return LinkSettings(loop.frames_per_tick, loop.queue_frames, first_ms * MILLISECOND_NS, longest_ms * MILLISECOND_NS)
 
 
 def build_loop(bench: ServedBench, transport: Transport, clock: Clock, ring: Ring | None = None) -> Loop:

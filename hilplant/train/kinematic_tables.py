@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from hilplant.failure import Failure
 from hilplant.mechanics.motion import motion, point_motion
 from hilplant.mechanics.wiper import Wiper
-from hilplant.surrogates.samples import look_ups
+from hilplant.models.torque_samples import look_ups
 from hilplant.units import TURN_RAD
 
 Floats = NDArray[np.float64]

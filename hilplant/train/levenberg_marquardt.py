@@ -103,9 +103,7 @@ def _descent(fitted: Fitted, start: Floats, settings: Settings) -> Iterator[Floa
             return
 
 
-def _step(
-    fitted: Fitted, weights: Floats, damping: float, settings: Settings
-) -> tuple[Floats, float, float] | None:
+def _step(fitted: Fitted, weights: Floats, damping: float, settings: Settings) -> tuple[Floats, float, float] | None:
     """Return weights, damping and cost after a step that lowers the cost; None when none does."""
     decay, ones = settings.decay, np.eye(len(weights))
     error, hessian, gradient = fitted.normal(weights)

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hilplant.batch import simulate_batch
 from hilplant.bench import Bench
+from hilplant.models.narx import NETWORK
 from hilplant.models.records import pack
 from hilplant.signals import INPUT_INDEX
-from hilplant.surrogates.narx import NETWORK
+from hilplant.simulation.batch import simulate_batch
 from hilplant.train.motor_data import Floats, excitation
 
 COLUMNS = ("current_a", "crank_speed_rad_s", "crank_angle_rad", "motor_mode")

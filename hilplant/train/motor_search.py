@@ -14,10 +14,10 @@ import numpy as np
 
 from hilplant.bench import Bench
 from hilplant.jit import compiled_for_threads
+from hilplant.models.narx import NETWORK
 from hilplant.models.plant import step
 from hilplant.models.records import State, pack, unpack_inputs, unpack_parameters, unpack_state
 from hilplant.signals import INPUT_INDEX
-from hilplant.surrogates.narx import NETWORK
 from hilplant.train.motor_data import Floats
 from hilplant.units import TURN_RAD
 

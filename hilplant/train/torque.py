@@ -157,9 +157,7 @@ def _with_errors(
 ) -> Trained:
     network, scale, sets = made
     none = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
-    trained = Trained(
-        plan, network, scale, minimum.weights, none, minimum.epochs, minimum.judged, minimum.interrupted
-    )
+    trained = Trained(plan, network, scale, minimum.weights, none, minimum.epochs, minimum.judged, minimum.interrupted)
     squared = (trained.torques(data.training.states) - data.training.torques) ** 2
     parts = [float(squared[rows].mean()) for rows in sets]
     separate = float(np.mean((trained.torques(data.validation.states) - data.validation.torques) ** 2))

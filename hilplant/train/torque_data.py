@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from hilplant.bench.assembly import Bench
 from hilplant.bench.plant_description import WholeWiper
 from hilplant.failure import Failure
-from hilplant.surrogates import samples
+from hilplant.models import torque_samples as samples
 from hilplant.units import TURN_RAD
 
 Floats = NDArray[np.float64]

@@ -14,7 +14,7 @@ from hilplant.bench.load_files import TORQUE_FORMAT, TorqueFile
 from hilplant.bench.parameter_hash import load_hash
 from hilplant.bench.plant_description import WholeWiper
 from hilplant.failure import Failure
-from hilplant.surrogates import samples
+from hilplant.models import torque_samples as samples
 from hilplant.train.torque import Data, Trained
 from hilplant.train.torque_data import grid, physical_torques
 from hilplant.train.writing import data_hash

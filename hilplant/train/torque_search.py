@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from hilplant.batch import simulate_batch
 from hilplant.bench.assembly import Bench
+from hilplant.models import torque_samples as samples
 from hilplant.models.load import LOADS
 from hilplant.models.records import MODEL_AT, State
 from hilplant.signals import IN_CHARGE, INPUT_INDEX
-from hilplant.surrogates import samples
+from hilplant.simulation.batch import simulate_batch
 from hilplant.train.random_scenarios import random_inputs, random_state
 from hilplant.train.torque_file import network_torques
 
@@ -118,9 +118,7 @@ def _run(bench: Bench, inputs: Floats, seeds: list[int], load: str) -> Floats:
     return simulate_batch(np.array(states), inputs, parameters, bench.tables, COLUMNS)
 
 
-def _compare_torques(
-    found: Found, bench: Bench, bounds: tuple[float, float], run: tuple[Floats, Floats, int]
-) -> None:
+def _compare_torques(found: Found, bench: Bench, bounds: tuple[float, float], run: tuple[Floats, Floats, int]) -> None:
     """Compare network and physical load at every angle and speed that was met with the network in charge."""
     rows, screens, first = run
     in_charge = rows[:, :, 2] == NETWORK

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hilplant.bench.sealed import seal
-from hilplant.recording.whole_file import write_text
+from hilplant.atomic_write import write_text
+from hilplant.checked_yaml.checksummed import seal
 
 
 def sealed_text(content: Mapping[str, Any]) -> str:

@@ -8,14 +8,25 @@ ARROWS: dict[str, set[str]] = {
     "failure": set(),
     "jit": set(),
     "signals": {"units"},
-    "models": {"units", "signals", "jit", "surrogates"},
-    "surrogates": {"units", "signals", "jit", "models"},
+    "models": {"units", "signals", "jit"},
     "mechanics": {"units", "signals", "failure", "models"},
     "bus": {"units", "signals", "failure"},
     "control": {"units", "signals", "failure", "jit", "models"},
-    "runtime": {"units", "signals", "failure", "jit", "models", "surrogates", "control", "bus"},
+    "runtime": {"units", "signals", "failure", "jit", "models", "control", "bus"},
     "recording": {"units", "signals", "failure", "jit", "models", "runtime"},
-    "bench": {"units", "signals", "failure", "jit", "resources", "models", "surrogates", "control", "mechanics", "bus"},
+    "checked_yaml": {"failure", "resources"},
+    "bench": {
+        "units",
+        "signals",
+        "failure",
+        "jit",
+        "resources",
+        "checked_yaml",
+        "models",
+        "control",
+        "mechanics",
+        "bus",
+    },
     "doctor": {"jit"},
 }
 #: The stand-in ECU decides without knowing that there is a bus, a bench or a clock.
@@ -29,17 +40,17 @@ CAN_FILES = {"bus/transport.py", "bus/socketcan.py", "recording/frame_logs.py", 
 CLOCK_FILES = {
     "runtime/clock.py": {"monotonic_ns", "sleep"},
     "recording/drain.py": {"monotonic", "sleep"},
-    "bus/user_mode_linux.py": {"monotonic", "sleep"},
-    "display.py": {"monotonic", "sleep"},
+    "vcan/user_mode_linux.py": {"monotonic", "sleep"},
+    "cli/display.py": {"monotonic", "sleep"},
     "ecu/command.py": {"monotonic"},
     "identify/progress_display.py": {"monotonic"},
     "identify/three_stages.py": {"perf_counter"},
-    "identify/twin_study.py": {"perf_counter"},
+    "thesis/twin_study.py": {"perf_counter"},
     "train/command.py": {"perf_counter", "process_time"},
     "train/motor_fit.py": {"perf_counter"},
     "train/torque_study.py": {"perf_counter"},
 }
-START_TIME_FILES = {"recording/recorder.py", "cli_identification.py"}
+START_TIME_FILES = {"recording/recorder.py", "cli/identification.py"}
 
 
 def test_every_import_follows_an_arrow(sources: list[Any]) -> None:
@@ -71,7 +82,7 @@ def test_only_the_transport_the_frame_logs_and_the_examination_touch_can(sources
 def test_the_clock_is_read_in_named_files_only(sources: list[Any]) -> None:
     wrong = []
     for source in sources:
-        if source.room != "benchmarks":
+        if source.room != "perf":
             excess = source.attributes_of("time") - CLOCK_FILES.get(source.name, set())
             wrong += [f"{source.name} uses time.{name}" for name in sorted(excess)]
     assert not wrong, "\n".join(wrong)
@@ -89,6 +100,6 @@ def test_the_date_is_read_in_named_files_only(sources: list[Any]) -> None:
 def test_compiled_rooms_import_nothing_that_touches_the_world(sources: list[Any]) -> None:
     allowed = {"math", "typing", "numpy", "collections", "dataclasses", "enum"}
     for source in sources:
-        if source.room in ("models", "surrogates"):
+        if source.room == "models":
             foreign = {module.split(".")[0] for module in source.imports} - allowed - {"hilplant"}
             assert not foreign, f"{source.name} imports {sorted(foreign)}"

@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from hilplant.bench.sealed import flaw
+from hilplant.checked_yaml.checksummed import flaw
 
 MOST_LINES = 350
 MOST_FUNCTION_LINES = 60

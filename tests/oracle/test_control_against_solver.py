@@ -15,7 +15,7 @@ from scipy.interpolate import CubicHermiteSpline
 from hilplant.bench import load_bench
 from hilplant.control.catalogue import controller_named
 from hilplant.models.tables import GRAVITY, INERTIA, POINTS
-from hilplant.studies.control_test import metrics, run_drive, thesis_drive
+from hilplant.thesis.control_test import metrics, run_drive, thesis_drive
 from hilplant.units import TURN_RAD
 
 BENCH = load_bench("default")

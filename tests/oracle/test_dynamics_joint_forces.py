@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from hilplant.mechanics.inverse_dynamics import Loads
+from hilplant.mechanics.joint_forces import loads_over_a_turn, peak_loads
 from hilplant.mechanics.wiper import WiperParts, assemble
-from hilplant.studies.joint_forces import loads_over_a_turn, peak_loads
 
 Shipped = Callable[[str], WiperParts]
 TURN_A_SECOND = 2.0 * np.pi

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from support.interpolation import interpolation_errors, knots_within, read_rows
 
 from hilplant.mechanics.coefficients import Aerodynamics, Coefficient, CoefficientError
-from hilplant.mechanics.interpolation import interpolation_errors, knots_within, read_rows
 from hilplant.mechanics.inverse_dynamics import AppliedForce, CrankMotion, inverse_dynamics
 from hilplant.mechanics.motion import motion, point_motion
 from hilplant.mechanics.newton_raphson import follow, rates

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from uncertainties import ufloat
 
 from hilplant.failure import Failure
-from hilplant.identify.bench_measurements import (
+from hilplant.motor_bench.bench_measurements import (
     Friction,
     SteadyRun,
     back_emf_constant,
@@ -22,7 +22,7 @@ from hilplant.identify.bench_measurements import (
     run_down,
     shaft_speed,
 )  # fmt: skip
-from hilplant.identify.data_sheet import SpeedSheet, from_sheet, with_error
+from hilplant.motor_bench.data_sheet import SpeedSheet, from_sheet, with_error
 
 R, L, K, J, B, T = 1.17, 2.9e-3, 0.0442, 2.4e-5, 1.0e-4, 0.045
 

@@ -6,12 +6,11 @@ from typing import Any
 import pytest
 
 from hilplant import resources
-from hilplant.bench.yaml_reader import read_text
-from hilplant.identify.published import as_table, figures, published_lines
-from hilplant.identify.rounding import cut_to, half_digit, reachable, rounds_to
+from hilplant.checked_yaml.yaml_reader import read_text
+from hilplant.thesis.published import as_table, figures, published_lines
+from hilplant.thesis.rounding import cut_to, half_digit, reachable, rounds_to
 
 LINES = {(line.table, line.name): line for line in published_lines()}
-
 
 
 def load_file() -> dict[str, Any]:

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from hilplant.bench import load_bench
-from hilplant.identify.coverage import twin_runs
 from hilplant.identify.experiment import simulate_run
 from hilplant.identify.local_search import left_over, search
 from hilplant.identify.parameters import SEVENTEEN, Choice, chosen
@@ -15,6 +14,7 @@ from hilplant.identify.residuals import Noise, Problem, directions, edge_errors_
 from hilplant.identify.run_of_data import make_run
 from hilplant.identify.twin import CLEAN, Condition, Spoiling, chance, played, spoilt, thesis_conditions
 from hilplant.identify.uncertainty import spread, verdicts
+from hilplant.thesis.coverage import twin_runs
 
 COUNT, SAMPLES, EDGES = 4, 4000, 40
 ONE = Noise(1.0, 1.0)

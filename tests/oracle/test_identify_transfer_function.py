@@ -12,11 +12,7 @@ from scipy.signal import lsim
 
 from hilplant.bench import load_bench
 from hilplant.failure import Failure
-from hilplant.identify.checks import examine
-from hilplant.identify.files import Origin
 from hilplant.identify.first_stage import first_stage
-from hilplant.identify.measurement import Measurement
-from hilplant.identify.preparation import read_measurement
 from hilplant.identify.sequence_runs import stages_of, write_scenario
 from hilplant.identify.srivc import Stretch, _searched, fit, simulated
 from hilplant.identify.transfer_function import (
@@ -30,7 +26,11 @@ from hilplant.identify.transfer_function import (
     of_motor,
     transfer_function,
 )  # fmt: skip
-from hilplant.simulation import simulate
+from hilplant.measurements.checks import examine
+from hilplant.measurements.files import Origin
+from hilplant.measurements.measurement import Measurement
+from hilplant.measurements.preparation import read_measurement
+from hilplant.simulation.run import simulate
 
 MOTOR = Equivalent(1.17, 2.9e-3, 0.044, 2.4e-5, 2.2e-4)
 PERIOD_S = 1e-3

@@ -30,9 +30,7 @@ MOTORS = st.builds(
 def scaled_error(drive: Drive, time: float) -> float:
     """Compare in coordinates sqrt(L) i, sqrt(J) w, in which exp(A t) never exceeds 1 and scipy's is well scaled."""
     coupling = drive.constant / math.sqrt(drive.inductance * drive.inertia)
-    a = np.array(
-        [[-drive.resistance / drive.inductance, -coupling], [coupling, -drive.damping / drive.inertia]]
-    )
+    a = np.array([[-drive.resistance / drive.inductance, -coupling], [coupling, -drive.damping / drive.inertia]])
     scale = math.sqrt(drive.inertia / drive.inductance)
     e11, e12, e21, e22 = propagator(drive, time)
     return float(np.abs(np.array([[e11, e12 / scale], [e21 * scale, e22]]) - expm(a * time)).max())

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 
 from hilplant.bench import load_bench
 from hilplant.bench.motor_network_file import QUANTITIES
+from hilplant.models.narx import FAST_BRUSH, SLOW_BRUSH, Sample, path_of, predict
 from hilplant.resources import shipped
-from hilplant.surrogates.narx import FAST_BRUSH, SLOW_BRUSH, Sample, path_of, predict
 from hilplant.train.motor_data import excitation, mean_torque, physical, recorded
 from hilplant.train.motor_fit import ENDLESS, Fit, Scaling, first_weights, train_path
 from hilplant.train.motor_loop import room_for, run

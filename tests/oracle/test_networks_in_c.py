@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hilplant.bench import load_bench
-from hilplant.benchmarks.c_step import compile_networks
 from hilplant.models.plant import simulate_rows
+from hilplant.perf.c_step import compile_networks
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 from hilplant.train.motor_data import excitation
 

@@ -1,6 +1,6 @@
 """The plant without tables at 1 ms against an adaptive solver at tight tolerance, for every published motor.
 
-The reference (hilplant/studies/reference.py) shares no code with the step: it writes (3.30), (3.31) and (6.3) down
+The reference (hilplant/thesis/reference.py) shares no code with the step: it writes (3.30), (3.31) and (6.3) down
 once more, and treats dry friction as a switched system whose switching instants are located by the solver's events.
 """
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from hilplant.models.plant import tick
 from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State, pack
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
-from hilplant.studies.solver import Errors, Rows, compare
+from hilplant.thesis.solver import Errors, Rows, compare
 
 MOTORS = Path(__file__).parents[2] / "config" / "motors"
 LIMIT_PERCENT = 0.5

@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from support.closed_form import ClosedFormWiper
 
-from hilplant.batch import simulate_batch
-from hilplant.benchmarks.c_step import SimulateRows, compile_batch, compile_step
 from hilplant.models.circuit import CIRCUITS
 from hilplant.models.plant import simulate_rows
 from hilplant.models.records import Arm, Blade, Brush, Friction, Load, Motor, Parameters, ParkSwitch, State, pack
+from hilplant.perf.c_step import SimulateRows, compile_batch, compile_step
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS
-from hilplant.studies.closed_form import ClosedFormWiper
+from hilplant.simulation.batch import simulate_batch
 
 Rows = NDArray[np.float64]
 Random = np.random.Generator

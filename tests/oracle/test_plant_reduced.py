@@ -6,13 +6,13 @@ blades at 0.69 and 0.54 m. The step reads it from tables, the reference from its
 
 import numpy as np
 import pytest
+from support.closed_form import ClosedFormWiper
 
 from hilplant.bench.description import LONGEST_STEP_S
 from hilplant.models.records import Arm, Blade, Brush, Friction, Load, Motor, Parameters, ParkSwitch, State
 from hilplant.signals import OUTPUT_INDEX
-from hilplant.studies.closed_form import ClosedFormWiper
-from hilplant.studies.reference import Reference
-from hilplant.studies.solver import DRY, SCENARIOS, TACKY, WET, Rows, compare, errors_percent, run_step
+from hilplant.thesis.reference import Reference
+from hilplant.thesis.solver import DRY, SCENARIOS, TACKY, WET, Rows, compare, errors_percent, run_step
 
 LIMIT_PERCENT = 0.5
 MOTOR = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2), 1.983e-5, 1.582e-4, 0.0, 63.0)

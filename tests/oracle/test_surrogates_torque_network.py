@@ -7,9 +7,9 @@ import pytest
 from numpy.typing import NDArray
 
 from hilplant.bench.load_files import TorqueFile
-from hilplant.benchmarks.torque_network import compile_network
-from hilplant.surrogates.samples import network_tangents, network_torques
-from hilplant.surrogates.torque_network import network_tangent
+from hilplant.models.torque_network import network_tangent
+from hilplant.models.torque_samples import network_tangents, network_torques
+from hilplant.perf.torque_network import compile_network
 
 Floats = NDArray[np.float64]
 STATES = np.column_stack([np.linspace(0.0, 6.28, 500), np.random.default_rng(1).uniform(1.0, 7.0, 500)])

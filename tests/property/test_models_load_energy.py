@@ -4,6 +4,7 @@ import math
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.closed_form import ClosedFormWiper
 
 from hilplant.models.armature import Motion
 from hilplant.models.circuit import Connection
@@ -11,8 +12,7 @@ from hilplant.models.load import Crank, resist
 from hilplant.models.lookup import find
 from hilplant.models.records import Arm, Blade, Brush, Friction, Inputs, Load, Motor, Parameters, ParkSwitch
 from hilplant.models.shaft import Train, turn
-from hilplant.studies.closed_form import ClosedFormWiper
-from hilplant.surrogates.torque_network import NO_TANGENT
+from hilplant.models.torque_network import NO_TANGENT
 
 WIPER = ClosedFormWiper()
 TABLES = WIPER.tables(4096)

@@ -8,10 +8,10 @@ import math
 import random
 
 import pytest
+from support.ecu_closed_loop import ClosedLoop
 
 from hilplant.bench import load_bench
 from hilplant.ecu.chart import PAUSES, RESTING, Phase
-from hilplant.ecu.closed_loop import ClosedLoop
 from hilplant.ecu.relay_controller import State, advance
 from hilplant.ecu.vocabulary import Fault, Inputs, Master, Settings, Stalk
 from hilplant.signals import INPUT_INDEX

@@ -6,10 +6,10 @@ Truth is physics: where the crank is, whether the park contact is closed, how ma
 import math
 
 import pytest
+from support.ecu_closed_loop import ClosedLoop
 
 from hilplant.bench import load_bench
 from hilplant.ecu.chart import Phase
-from hilplant.ecu.closed_loop import ClosedLoop
 from hilplant.ecu.vocabulary import Fault, Master, Stalk
 from hilplant.signals import INPUT_INDEX
 

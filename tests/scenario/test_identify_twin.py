@@ -12,7 +12,6 @@ import pytest
 
 from hilplant.bench import check_bench, load_bench
 from hilplant.identify.cost import cost_of
-from hilplant.identify.coverage import off_start, twin_runs
 from hilplant.identify.executor import evaluator, here, on_cluster
 from hilplant.identify.experiment import simulate_run
 from hilplant.identify.genetic import Outcome, Settings
@@ -22,9 +21,10 @@ from hilplant.identify.residuals import Problem, expected_noise
 from hilplant.identify.run_of_data import make_run
 from hilplant.identify.three_stages import EXPLAINED, Task, identify, refined
 from hilplant.identify.twin import CLEAN, Condition, Spoiling, played, spoilt, thesis_conditions, write_csv
-from hilplant.identify.twin_study import published_start
 from hilplant.identify.uncertainty import spread, verdicts
 from hilplant.identify.validation import compare
+from hilplant.thesis.coverage import off_start, twin_runs
+from hilplant.thesis.twin_study import published_start
 
 MOTOR = {
     "slow_resistance_ohm", "fast_resistance_ohm", "slow_inductance_henry", "fast_inductance_henry",

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from hilplant.bench import load_bench
-from hilplant.cli import main
+from hilplant.cli.main import main
 from hilplant.identify.twin import Condition, Spoiling, recorded
 
 HEADER = "time_s,voltage_v,current_a,park_contact,relay_fast"

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from typer.testing import CliRunner
 
 from hilplant.bench import check_bench, load_bench
-from hilplant.cli import app
+from hilplant.cli.main import app
 from hilplant.failure import Failure
 from hilplant.resources import shipped
 

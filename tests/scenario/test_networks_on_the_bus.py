@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from hilplant.bench import load_bench
-from hilplant.studies.bus_run import ROUND_S, BusRun, drive
-from hilplant.surrogates.narx import NETWORK
+from hilplant.models.narx import NETWORK
+from hilplant.simulation.bus_run import ROUND_S, BusRun, drive
 
 BENCHES = {
     "networks": "networks",

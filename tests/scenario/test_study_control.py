@@ -12,19 +12,19 @@ from typer.testing import CliRunner
 
 from hilplant.bench import load_bench
 from hilplant.bench.assembly import Bench
-from hilplant.cli import app
+from hilplant.cli.main import app
 from hilplant.control.catalogue import controller_named, searched_neuron
 from hilplant.control.records import Controller
 from hilplant.failure import Failure
 from hilplant.signals import OUTPUT_INDEX
-from hilplant.studies import control_command, control_rain
-from hilplant.studies.control_estimation import ESTIMATORS, Case, network_speeds
-from hilplant.studies.control_network import train, training_record
-from hilplant.studies.control_rain import LEAST_PER_MINUTE, MOST_PER_MINUTE, rain, two_speed_duty
-from hilplant.studies.control_search import cost, search, source_gains
-from hilplant.studies.control_study import Study, run_study, study_bench
-from hilplant.studies.control_test import Metrics, Run, metrics, run_drive, thesis_drive
-from hilplant.studies.control_thesis import ROWS, compare_order, factors, far_off
+from hilplant.thesis import control_command, control_rain
+from hilplant.thesis.control_estimation import ESTIMATORS, Case, network_speeds
+from hilplant.thesis.control_network import train, training_record
+from hilplant.thesis.control_rain import LEAST_PER_MINUTE, MOST_PER_MINUTE, rain, two_speed_duty
+from hilplant.thesis.control_search import cost, search, source_gains
+from hilplant.thesis.control_study import Study, run_study, study_bench
+from hilplant.thesis.control_test import Metrics, Run, metrics, run_drive, thesis_drive
+from hilplant.thesis.control_thesis import ROWS, compare_order, factors, far_off
 
 PICTURES = {
     "cascade", "error_hebb", "error_hebb_fuzzy", "fuzzy_sets", "hebb", "hebb_fuzzy", "pid", "quadratic",
@@ -216,7 +216,7 @@ def test_the_command_prints_its_tables_draws_its_pictures_and_writes_its_figures
 INTERRUPTED = """
 from hilplant.bench import load_bench
 from hilplant.control.catalogue import controller_named
-from hilplant.studies.control_test import run_drive, thesis_drive
+from hilplant.thesis.control_test import run_drive, thesis_drive
 
 bench = load_bench("default")
 controller, drive = controller_named("pid", bench.parameters.motor, 0.001), thesis_drive(bench)

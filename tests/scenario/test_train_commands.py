@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from hilplant.bench import check_bench, load_bench
-from hilplant.cli import app
+from hilplant.cli.main import app
 from hilplant.train import torque
 from hilplant.train.levenberg_marquardt import Settings
 from hilplant.train.torque import Plan, data_of, train

@@ -23,7 +23,7 @@ from hilplant.failure import Failure
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.server import build_loop
 from hilplant.signals import INPUT_INDEX
-from hilplant.studies.control_test import run_drive, thesis_drive
+from hilplant.thesis.control_test import run_drive, thesis_drive
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 BENCH = load_bench("default")

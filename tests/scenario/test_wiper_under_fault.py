@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from hilplant.bench import load_bench
-from hilplant.scenario import Entry, Scenario
 from hilplant.signals import INPUT_INDEX
-from hilplant.simulation import Result, simulate
+from hilplant.simulation.run import Result, simulate
+from hilplant.simulation.scenario import Entry, Scenario
 
 BENCH = load_bench("default")
 SLOW = BENCH.parameters.motor.slow

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from support.closed_form import ClosedFormWiper
 
-from hilplant.batch import simulate_batch
 from hilplant.models.plant import simulate_rows
 from hilplant.models.records import (
     MODEL_AT,
@@ -24,8 +24,8 @@ from hilplant.models.records import (
     pack,
 )
 from hilplant.signals import OUTPUT_INDEX, OUTPUTS
-from hilplant.studies.closed_form import ClosedFormWiper
-from hilplant.studies.solver import Rows
+from hilplant.simulation.batch import simulate_batch
+from hilplant.thesis.solver import Rows
 
 MOTOR = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2), 1.983e-5, 1.582e-4, 0.02, 63.0)
 SETS, TICKS = 11, 400

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hilplant.bench import BenchError, load_bench
-from hilplant.bench.sealed import seal
+from hilplant.checked_yaml.checksummed import seal
 from hilplant.resources import shipped
 
 SHIPPED = (shipped("config", "surrogates") / "motor_default.yaml").read_text()

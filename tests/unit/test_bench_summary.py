@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from hilplant.bench import load_bench
 from hilplant.bench.summary import summarise, summary_lines
 from hilplant.bench.verdict import verdict_on
-from hilplant.cli import app
+from hilplant.cli.main import app
 from hilplant.resources import shipped
 
 LINKAGE = shipped("config", "linkages", "rhd_slave_driven.yaml").read_text()

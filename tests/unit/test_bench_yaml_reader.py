@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from hilplant.bench.problems import Problem
-from hilplant.bench.yaml_reader import read_text
+from hilplant.checked_yaml.problems import Problem
+from hilplant.checked_yaml.yaml_reader import read_text
 
 
 @pytest.mark.parametrize(

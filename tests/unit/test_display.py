@@ -8,8 +8,8 @@ import pytest
 from numpy.typing import NDArray
 from rich.console import Console
 
-from hilplant.canvas import Canvas
-from hilplant.display import Scene, picture, plain_line, reading, watch
+from hilplant.cli.canvas import Canvas
+from hilplant.cli.display import Scene, picture, plain_line, reading, watch
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS, STATUS, STATUS_INDEX
 
 FIRST_INPUT = 2

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from typer.testing import CliRunner
 
-from hilplant.cli import app
+from hilplant.cli.main import app
 from hilplant.ecu.chart import CHART, Phase
 from hilplant.ecu.mermaid import chart_text
 

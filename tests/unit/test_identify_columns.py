@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from hilplant.failure import Failure
-from hilplant.identify.columns import parse_columns
-from hilplant.identify.measurement import Channel
-from hilplant.identify.preparation import Preparation, prepare
+from hilplant.measurements.columns import parse_columns
+from hilplant.measurements.measurement import Channel
+from hilplant.measurements.preparation import Preparation, prepare
 
 TIME_S = np.arange(3000) * 1e-3
 VOLTS = np.where(TIME_S < 0.5, 0.0, 12.0)

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from hilplant.failure import Failure
-from hilplant.identify.checks import examine, refuse
-from hilplant.identify.columns import Column, parse_columns
-from hilplant.identify.measurement import Channel, Measurement
-from hilplant.identify.preparation import Preparation, prepare
+from hilplant.measurements.checks import examine, refuse
+from hilplant.measurements.columns import Column, parse_columns
+from hilplant.measurements.measurement import Channel, Measurement
+from hilplant.measurements.preparation import Preparation, prepare
 
 R, L, K, J, B, N = 1.17, 2.9e-3, 0.044, 2.4e-5, 1.0e-4, 63.0
 #: Seconds, volts: off, then the sequence of 5.2, then off.

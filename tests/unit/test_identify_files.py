@@ -12,10 +12,10 @@ import pytest
 
 from hilplant.bench import load_bench
 from hilplant.failure import Failure
-from hilplant.identify.columns import parse_columns
-from hilplant.identify.files import Origin, read_channels, sha256
-from hilplant.identify.measurement import Measurement
-from hilplant.identify.preparation import Preparation, read_measurement
+from hilplant.measurements.columns import parse_columns
+from hilplant.measurements.files import Origin, read_channels, sha256
+from hilplant.measurements.measurement import Measurement
+from hilplant.measurements.preparation import Preparation, read_measurement
 from hilplant.recording.mf4_frames import append_frames
 from hilplant.recording.tables import write_table
 from hilplant.signals import ECU_SAID, PUBLISHED

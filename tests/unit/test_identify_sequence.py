@@ -10,7 +10,7 @@ import pytest
 from hilplant.failure import Failure
 from hilplant.identify.sequence import Player, Stage, advance, figure_5_4, informative, play, scenario_text
 from hilplant.identify.sequence_runs import Rig, drive, stages_of, write_scenario
-from hilplant.simulation import simulate
+from hilplant.simulation.run import simulate
 
 
 def test_the_published_sequence() -> None:

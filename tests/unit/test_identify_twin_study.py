@@ -2,9 +2,9 @@
 
 import pytest
 
-from hilplant.identify.coverage import Trial, coverage, holds
 from hilplant.identify.profile import Interval
-from hilplant.identify.twin_study import reached
+from hilplant.thesis.coverage import Trial, coverage, holds
+from hilplant.thesis.twin_study import reached
 
 
 def test_trials_are_counted_and_their_errors_averaged():

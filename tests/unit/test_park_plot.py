@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hilplant.failure import Failure
-from hilplant.studies.park_plot import plot_park_sequences
+from hilplant.plots.park import plot_park_sequences
 
 
 def test_the_three_sequences_are_drawn(tmp_path: Path) -> None:

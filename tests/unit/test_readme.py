@@ -8,7 +8,7 @@ import cantools
 from typer.main import get_command
 
 from hilplant.bench import check_bench, load_bench
-from hilplant.cli import app
+from hilplant.cli.main import app
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

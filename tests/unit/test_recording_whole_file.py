@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from hilplant.atomic_write import whole_file, write_text
 from hilplant.failure import Failure
-from hilplant.recording.whole_file import whole_file, write_text
 
 
 def test_a_failure_leaves_what_was_there_and_nothing_beside_it(tmp_path: Path) -> None:

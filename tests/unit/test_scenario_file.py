@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hilplant.bench.problems import BenchError
+from hilplant.checked_yaml.problems import BenchError
 from hilplant.failure import Failure
-from hilplant.scenario import Scenario, load_scenario
 from hilplant.signals import INPUT_INDEX, INPUTS
+from hilplant.simulation.scenario import Scenario, load_scenario
 
 DEFAULTS = np.array([signal.default for signal in INPUTS])
 STEP_NS = 1_000_000

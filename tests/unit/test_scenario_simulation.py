@@ -12,8 +12,8 @@ from hilplant import Bench, BenchError, Result, load_bench, simulate
 from hilplant.failure import Failure
 from hilplant.recording import tables
 from hilplant.resources import shipped
-from hilplant.scenario import load_scenario
-from hilplant.simulation import simulate_to_file
+from hilplant.simulation.run import simulate_to_file
+from hilplant.simulation.scenario import load_scenario
 
 #: The order that readers of the file rely on.
 FIRST_COLUMNS = [

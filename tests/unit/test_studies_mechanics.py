@@ -9,16 +9,16 @@ import yaml
 from typer.testing import CliRunner
 
 from hilplant.bench import Bench, load_bench
-from hilplant.cli import app
+from hilplant.cli.main import app
 from hilplant.failure import Failure
 from hilplant.models.tables import GRAVITY, POINTS
+from hilplant.plots.mechanics import plot_conditions, plot_torque
 from hilplant.resources import shipped
-from hilplant.studies.crank_torque import WETNESS, Conditions, crank_torque
-from hilplant.studies.mechanics_command import solver_study
-from hilplant.studies.mechanics_plots import plot_conditions, plot_torque
-from hilplant.studies.thesis_checks import Check, thesis_checks
-from hilplant.studies.whole_system import five_wipes, shape_difference
-from hilplant.studies.wiping import INDEPENDENT, demands, wiping
+from hilplant.simulation.crank_torque import WETNESS, Conditions, crank_torque
+from hilplant.thesis.mechanics_command import solver_study
+from hilplant.thesis.thesis_checks import Check, thesis_checks
+from hilplant.thesis.whole_system import five_wipes, shape_difference
+from hilplant.thesis.wiping import INDEPENDENT, demands, wiping
 from hilplant.units import TURN_RAD
 
 BENCH = load_bench("default")

@@ -7,9 +7,9 @@ import pytest
 
 from hilplant.bench import BenchError, load_bench
 from hilplant.models.records import Brush, Motor
-from hilplant.scenario import load_scenario
-from hilplant.simulation import simulate
-from hilplant.studies.no_load_fit import NoLoadFile, fit_no_load, misses_of, read_motor, read_no_load, steady_state
+from hilplant.motor_bench.no_load_fit import NoLoadFile, fit_no_load, misses_of, read_motor, read_no_load, steady_state
+from hilplant.simulation.run import simulate
+from hilplant.simulation.scenario import load_scenario
 
 PUBLISHED = ("table_5_6", "table_5_8", "table_5_9")
 LIMIT = 0.04

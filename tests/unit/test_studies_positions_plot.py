@@ -14,8 +14,8 @@ from hilplant.mechanics.arms import arm_points
 from hilplant.mechanics.blades import blade_tips
 from hilplant.mechanics.slave_driven import slave_driven
 from hilplant.mechanics.wiper import SideParts, Wiper, WiperParts, assemble
+from hilplant.plots.positions import plot_positions
 from hilplant.resources import shipped
-from hilplant.studies.positions_plot import plot_positions
 
 LEFT, RIGHT, CRANK = "#0b5cad", "#d9730d", "#b3261e"
 

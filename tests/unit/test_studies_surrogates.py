@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from hilplant.models.load import LOADS
-from hilplant.studies.surrogate_study import Compared, finer_current, lines, models, plot
+from hilplant.thesis.surrogate_study import Compared, finer_current, lines, models, plot
 
 
 def compared(name: str, **changed: float) -> Compared:
@@ -56,8 +56,8 @@ def test_the_table_and_the_picture_show_every_model(tmp_path: Path) -> None:
 
 def test_the_truth_of_the_minute_is_the_step_at_one_millisecond_to_three_digits() -> None:
     """The reduced plant's own error at the step that the loop takes, by steps twenty times shorter."""
-    from hilplant.benchmarks.networks_cost import calm_minute
     from hilplant.models.plant import simulate_rows
+    from hilplant.perf.networks_cost import calm_minute
     from hilplant.signals import OUTPUT_INDEX, OUTPUTS
 
     bench = models()["reduced"].bench

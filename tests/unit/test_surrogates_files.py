@@ -6,7 +6,7 @@ import pytest
 
 from hilplant.bench import check_bench, load_bench
 from hilplant.bench.load_files import TORQUE_FORMAT
-from hilplant.bench.sealed import flaw, seal
+from hilplant.checked_yaml.checksummed import flaw, seal
 from hilplant.resources import shipped
 from hilplant.train.levenberg_marquardt import Settings
 from hilplant.train.torque import Plan, data_of, train

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-HARNESS = (sys.executable, "-m", "hilplant.bus.private_vcan")
+HARNESS = (sys.executable, "-m", "hilplant.vcan.private_vcan")
 
 
 def private(*command: str, text: str = "", folder: Path | None = None) -> subprocess.CompletedProcess[str]:

@@ -14,8 +14,8 @@ import pytest
 from pyarrow import parquet
 
 from hilplant.failure import Failure
+from hilplant.plots.recording import plot_recording
 from hilplant.recording.export import export
-from hilplant.recording.plot import plot_recording
 from hilplant.recording.reader import read_recording
 from hilplant.signals import INPUTS, OUTPUTS, STATUS
 

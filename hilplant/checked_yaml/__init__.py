@@ -1,0 +1,1 @@
+"""YAML files with the line of every key, checked against typed descriptions."""

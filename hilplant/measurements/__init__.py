@@ -1,0 +1,1 @@
+"""Measurements of a real wiper: read, checked, and brought onto one clock."""

@@ -1,0 +1,149 @@
+"""From readings to the parameters of a motor, each with its standard error (5.4)."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from uncertainties import UFloat
+
+from hilplant.failure import Failure
+from hilplant.measurements.csv_table import read_csv
+from hilplant.measurements.measurement import Samples
+from hilplant.motor_bench.bench_measurements import (
+    Friction,
+    SteadyRun,
+    back_emf_constant,
+    cylinder_inertia,
+    decay,
+    inductance,
+    mean_of,
+    no_load_friction,
+    quantity,
+    resistance,
+    run_down,
+)
+from hilplant.motor_bench.data_sheet import SpeedSheet, from_sheet, with_error
+from hilplant.motor_bench.readings import BenchMode, BenchReadings, DataSheet, Given, SheetMode
+from hilplant.units import RAD_PER_S_PER_RPM
+
+MODES = ("slow", "fast")
+
+#: Parameters by the names of `identify.parameters`, with standard errors.
+Values = dict[str, UFloat]
+
+
+def parameters_of(readings: BenchReadings | DataSheet, beside: Path) -> Values:
+    """Return every parameter; files of samples are named from the folder `beside`.
+
+    Raises
+    ------
+    Failure
+        For a parameter that nothing tells, with what would, and for readings that contradict each other.
+
+    """
+    values = _of_bench(readings, beside) if isinstance(readings, BenchReadings) else _of_sheet(readings)
+    for name, value in readings.given.model_dump(exclude_none=True).items():
+        if name in values and name != "damping_n_m_s":
+            raise Failure(f"{name} is given, and the readings tell it too: leave one out")
+        values[name] = quantity(value)
+    for name, remedy in _REMEDIES.items():
+        if name not in values:
+            raise Failure(f"nothing tells {name}: give {remedy}")
+    return values
+
+
+def _refuse_impossible(values: Values) -> None:
+    """Refuse what no motor has; each text says what to look at."""
+    for name, value in values.items():
+        if name in ("damping_n_m_s", "coulomb_torque_n_m"):
+            if value.n < 0.0:
+                text = "take no-load points farther apart, or give damping_n_m_s"
+                raise Failure(f"{name} comes out below 0, {value:.2uP}: {text}")
+        elif not value.n > 0.0:
+            raise Failure(f"{name} comes out as {value:.2uP}, not above 0: check voltages, currents and speeds")
+
+
+_REMEDIES = {
+    **{f"{mode}_inductance_henry": f"time_constant_s or decay under {mode}, or it under given" for mode in MODES},
+    "inertia_kg_m2": "run_down or armature, or it under given",
+}
+
+
+def _of_bench(readings: BenchReadings, beside: Path) -> Values:
+    values: Values = {}
+    runs: list[SteadyRun] = []
+    constants: list[UFloat] = []
+    for name, mode in zip(MODES, (readings.slow, readings.fast), strict=True):
+        ohm = _resistance(name, mode, readings.reading_error)
+        points = [SteadyRun(*(with_error(each, readings.reading_error) for each in row)) for row in mode.no_load]
+        constant = mean_of([back_emf_constant(point, ohm) for point in points])
+        runs, constants = runs + points, constants + [constant] * len(points)
+        values |= {f"{name}_resistance_ohm": ohm, f"{name}_constant_v_s": constant}
+        values |= _inductance(name, mode, ohm, beside)
+    friction = _friction(runs, constants, readings.given)
+    values |= {"damping_n_m_s": quantity(friction[0]), "coulomb_torque_n_m": quantity(friction[1])}
+    _refuse_impossible(values)  # a run-down is read with this friction
+    if readings.armature is not None:
+        values["inertia_kg_m2"] = cylinder_inertia(readings.armature.mass_kg, readings.armature.radius_m)
+    if readings.run_down is not None:
+        values["inertia_kg_m2"] = run_down(*_samples(readings.run_down, beside), friction)
+    return values
+
+
+def _resistance(name: str, mode: BenchMode, error: float) -> UFloat:
+    if mode.resistance_ohm is not None:
+        return with_error(mode.resistance_ohm, error)
+    if not mode.blocked:
+        raise Failure(f"nothing tells {name}_resistance_ohm: give resistance_ohm or blocked under {name}")
+    return resistance([(with_error(volts, error), with_error(amperes, error)) for volts, amperes in mode.blocked])
+
+
+def _inductance(name: str, mode: BenchMode, ohm: UFloat, beside: Path) -> Values:
+    if mode.decay is not None:
+        return {f"{name}_inductance_henry": inductance(decay(*_samples(mode.decay, beside))[0], ohm)}
+    if mode.time_constant_s is not None:
+        return {f"{name}_inductance_henry": inductance(mode.time_constant_s, ohm)}
+    return {}
+
+
+def _friction(runs: Sequence[SteadyRun], constants: Sequence[UFloat], given: Given) -> Friction:
+    if given.damping_n_m_s is None:
+        return no_load_friction(runs, constants)
+    dry = [k * run.current_a - given.damping_n_m_s * run.speed_rad_s for run, k in zip(runs, constants, strict=True)]
+    return Friction(quantity(given.damping_n_m_s), mean_of(dry))
+
+
+def _samples(name: str, beside: Path) -> tuple[Samples, Samples]:
+    """Return the first two columns of a file, rows with a gap left out."""
+    path = beside / name
+    if not path.is_file():
+        raise Failure(f"{path}: cannot be read: there is no such file")
+    first, second = list(read_csv(path).columns.values())[:2]
+    known = np.isfinite(first) & np.isfinite(second)
+    if np.count_nonzero(known) < 10:
+        raise Failure(f"{path}: has fewer than ten rows with two numbers, a time [s] and a value")
+    return first[known], second[known]
+
+
+def _of_sheet(sheet: DataSheet) -> Values:
+    speeds = [_speed(mode, sheet.tolerance) for mode in (sheet.slow, sheet.fast)]
+    found = from_sheet(speeds[0], speeds[1], sheet.gear_ratio)
+    values = {name: getattr(found, name) for name in found._fields if name.endswith(("_ohm", "_v_s"))}
+    runs = [
+        SteadyRun(each.voltage_v, each.no_load_current_a, each.no_load_speed_rad_s * sheet.gear_ratio)
+        for each in speeds
+    ]
+    friction = _friction(runs, [found.slow_constant_v_s, found.fast_constant_v_s], sheet.given)
+    values |= {name: quantity(value) for name, value in friction._asdict().items()}
+    _refuse_impossible(values)
+    if found.gear_efficiency is not None:  # above 1 only within the sheet's tolerance
+        values["gear_efficiency"] = quantity(min(1.0, found.gear_efficiency.n), found.gear_efficiency.s)
+    return values
+
+
+def _speed(mode: SheetMode, tolerance: float) -> SpeedSheet:
+    """Return one speed; a number within +-tolerance, evenly, has a standard error of that over the root of 3."""
+    relative = tolerance / np.sqrt(3.0)
+    given = mode.model_dump(exclude_none=True)
+    given["no_load_speed_rad_s"] = given.pop("no_load_rpm") * RAD_PER_S_PER_RPM
+    return SpeedSheet(**{name: with_error(value, relative) for name, value in given.items()})

@@ -1,0 +1,80 @@
+"""What `hilplant motor` does: readings of one motor in, its parameter file out."""
+
+from pathlib import Path
+from typing import Any
+
+import typer
+import yaml
+
+from hilplant.atomic_write import write_text
+from hilplant.bench.parts import MotorFile
+from hilplant.checked_yaml.problems import BenchError, Problem
+from hilplant.checked_yaml.reading import Reading, shown
+from hilplant.failure import Failure
+from hilplant.measurements.files import sha256
+from hilplant.motor_bench.measured_motor import MODES, Values, parameters_of
+from hilplant.motor_bench.readings import AnyReadings, BenchReadings, DataSheet
+
+_BRUSH = ("resistance_ohm", "inductance_henry", "constant_v_s")
+
+
+def motor_from_readings(path: Path, out: Path) -> dict[str, Any]:
+    """Write a motor file, print every parameter with its standard error, and return the figures.
+
+    Raises
+    ------
+    Failure
+        For readings that do not make a motor; nothing is written then.
+
+    """
+    readings = _read(path)
+    try:
+        values = parameters_of(readings, path.parent)
+    except Failure as error:
+        raise Failure(f"{path}: {error}") from error
+    written = _document(path, readings, values)
+    MotorFile.model_validate(written)
+    head = "# From readings; `identified` has their standard errors.\n"
+    write_text(out, head + yaml.safe_dump(written, sort_keys=False))
+    given = readings.given.model_fields_set
+    for name, value in values.items():
+        how_sure = ", given" if name in given else f" +- {value.s:.2g}" if value.s else ", without an error"
+        typer.echo(f"  {name:22} {value.n:.6g}{how_sure}")
+    typer.echo(f"{out} written; put it under `motor` of a bench")
+    return {key: number for name, value in values.items() for key, number in _figures(name, value.n, value.s)}
+
+
+def _read(path: Path) -> BenchReadings | DataSheet:
+    reading = Reading()
+    document = reading.named_file(path)
+    if not reading.problems and not isinstance(document.data, dict):
+        raise BenchError([Problem(shown(path), 1, "must be a group of keys; see docs/identification.md")])
+    found = reading.check(document, (), {"readings": document.data}, AnyReadings) if document.data else None
+    reading.raise_problems()
+    if found is None:
+        raise BenchError([Problem(shown(path), 1, "holds nothing; see docs/identification.md")])
+    return found.readings
+
+
+def _document(path: Path, readings: BenchReadings | DataSheet, values: Values) -> dict[str, Any]:
+    """Return the motor file; what was given and not told is said to be assumed."""
+    given = readings.given.model_fields_set
+    brushes = {}
+    for mode in MODES:
+        brush: dict[str, Any] = {part: values[f"{mode}_{part}"].n for part in _BRUSH}
+        assumed = [part for part in _BRUSH if f"{mode}_{part}" in given]
+        brushes[mode] = brush | ({"assumed": assumed} if assumed else {})
+    rest = {name: value.n for name, value in values.items() if not name.startswith(MODES)}
+    assumed = [name for name in rest if name in given]
+    facts = {
+        "readings": path.name,
+        "sha256": sha256(path),
+        "standard_errors": {name: value.s for name, value in values.items() if name not in given},
+    }
+    head = {"name": readings.name, "source": readings.source, "status": readings.status}
+    numbers = {**brushes, **rest, "gear_ratio": readings.gear_ratio}
+    return head | numbers | ({"assumed": assumed} if assumed else {}) | {"identified": facts}
+
+
+def _figures(name: str, value: float, error: float) -> list[tuple[str, float]]:
+    return [(name, value), (f"{name}_standard_error", error)]

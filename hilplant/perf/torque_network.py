@@ -1,0 +1,71 @@
+"""What one evaluation of the torque network costs in compiled Python, against the same by hand in C."""
+
+import ctypes
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+from statistics import median
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from hilplant.bench import load_bench
+from hilplant.models.torque_samples import network_tangents
+from hilplant.perf.c_step import FLAGS, Rows, compiler
+from hilplant.perf.results import Goal, Measured, NotMeasurable, Row
+from hilplant.perf.samples import alternate
+from hilplant.units import SECOND_NS, TURN_RAD
+
+Tangents = Callable[[Rows, bool, Rows, Rows], None]
+
+_ROUNDS, _SAMPLES = 40, 20_000
+_SOURCE = Path(__file__).with_name("torque_network.c")
+_DOUBLES = ctypes.POINTER(ctypes.c_double)
+_GOAL = Goal(1.2)
+
+
+def compile_network(folder: Path) -> Tangents:
+    """Compile torque_network.c into `folder`; the function takes the same arrays as `network_tangents`."""
+    compiler()
+    library = folder / "torque_network.so"
+    command = ["gcc", *FLAGS, "-shared", "-fPIC", str(_SOURCE), "-o", str(library), "-lm"]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    if ended.returncode:
+        raise NotMeasurable(f"gcc: {(ended.stderr.strip() or 'no message').splitlines()[0]}")
+    function = ctypes.CDLL(str(library)).network_tangents
+    function.argtypes = [_DOUBLES, ctypes.c_int, _DOUBLES, ctypes.c_long, _DOUBLES]
+    function.restype = None
+
+    def tangents(numbers: Rows, wet: bool, states: Rows, into: Rows) -> None:
+        at = [array.ctypes.data_as(_DOUBLES) for array in (numbers, states, into)]
+        function(at[0], int(wet), at[1], len(states), at[2])
+
+    return tangents
+
+
+def measure() -> Measured:
+    """Evaluate random states in turn by both."""
+    bench = load_bench("network")
+    numbers, random = np.ascontiguousarray(bench.parameters.networks), np.random.default_rng(1)
+    states = np.column_stack([random.uniform(0.0, TURN_RAD, _SAMPLES), random.uniform(1.0, 7.0, _SAMPLES)])
+    into = np.empty((_SAMPLES, 3))
+    with TemporaryDirectory(prefix="hilplant-c-") as folder:
+        ways = (network_tangents, compile_network(Path(folder)))
+        seconds = alternate(_ROUNDS, *(lambda way=way: _timed_s(way, numbers, states, into) for way in ways))
+    ours_ns, c_ns = (median(values) / _SAMPLES * SECOND_NS for values in seconds)
+    rows = [
+        Row("torque network", ours_ns, "ns", c_ns, "C", _GOAL),
+    ]
+    figures: dict[str, float | str] = {
+        "torque_network_ns": ours_ns,
+        "torque_network_c_ns": c_ns,
+        "torque_network_ratio_to_c": ours_ns / c_ns,
+    }
+    return Measured(rows, figures)
+
+
+def _timed_s(way: Tangents, numbers: Rows, states: Rows, into: Rows) -> float:
+    begin = time.perf_counter()
+    way(numbers, False, states, into)
+    return time.perf_counter() - begin

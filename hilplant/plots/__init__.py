@@ -1,0 +1,1 @@
+"""Every picture that hilplant draws; the only room that imports matplotlib."""

@@ -1,0 +1,174 @@
+"""A scenario file: what drives the plant over time, when nothing on a bus does."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from hilplant import resources
+from hilplant.bench.description import InitialSection, OptionalGroup
+from hilplant.bench.values import signal_value
+from hilplant.checked_yaml.checked import Checked, NotNegative, Positive
+from hilplant.checked_yaml.problems import suggestion
+from hilplant.checked_yaml.reading import Reading
+from hilplant.checked_yaml.yaml_reader import Document, Location
+from hilplant.failure import Failure
+from hilplant.signals import INPUT_INDEX, INPUTS, Signal
+from hilplant.units import SECOND_NS
+
+#: Name of the value by which a signal takes that of another.
+_SAME = "same"
+
+_Pair = Annotated[list[Any], Field(min_length=2, max_length=2)]
+
+
+class _ScenarioFile(Checked):
+    seconds: Positive
+    title: str = ""
+    initial: OptionalGroup
+    signals: Annotated[dict[str, list[_Pair]], Field(default_factory=dict)]
+
+
+class _Ramp(Checked):
+    ramp_to: Any
+    seconds: Positive
+
+
+class _Instant(Checked):
+    time: NotNegative
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """From `time_s` on the signal has `value`, or is on its way there for `ramp_s`; `place` is its file and line."""
+
+    time_s: float
+    value: float
+    ramp_s: float = 0.0
+    place: str = field(default="", kw_only=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """Entries of each named input by its index, and what differs from the bench's initial state."""
+
+    seconds: float
+    initial: dict[str, float]
+    entries: dict[int, tuple[Entry, ...]]
+
+    def input_rows(self, input_row: NDArray[np.float64], step_ns: int) -> NDArray[np.float64]:
+        """Return the inputs of every tick; times are rounded to ticks, unnamed inputs keep `input_row`.
+
+        Raises
+        ------
+        Failure
+            When that is not one tick, or a ramp begins at no number.
+        """
+        ticks = round(self.seconds * SECOND_NS / step_ns)
+        if not ticks:
+            raise Failure(f"a scenario of {self.seconds:g} s is shorter than a tick of {step_ns / SECOND_NS:g} s")
+        rows = np.tile(input_row, (ticks, 1))
+        for index, entries in self.entries.items():
+            for entry in entries:
+                _apply(rows[:, index], entry, step_ns, INPUTS[index])
+        return rows
+
+
+def load_scenario(name: str | Path) -> Scenario:
+    """Read and check a scenario, by its path or by the name of a shipped one.
+
+    Raises
+    ------
+    BenchError
+        With every problem, each with file and line.
+
+    """
+    reading = Reading()
+    document = reading.named_file(resources.named("scenarios", name))
+    if document.problems or not reading.sources:
+        reading.raise_problems()
+    top = reading.take(document, (), _ScenarioFile)
+    initial = reading.check(document, ("initial",), _group_at(document, "initial"), InitialSection)
+    entries = _entries(reading, document)
+    reading.raise_problems()
+    if top is None or initial is None:
+        raise AssertionError("a description that failed left no problem behind")
+    return Scenario(top.seconds, initial.model_dump(include=initial.model_fields_set), entries)
+
+
+def _group_at(document: Document, key: str) -> dict[str, Any]:
+    """Return a group; nothing where it is left out, or is none and has been told so."""
+    group = document.at((key,))
+    return group if isinstance(group, dict) else {}
+
+
+def _entries(reading: Reading, document: Document) -> dict[int, tuple[Entry, ...]]:
+    found: dict[int, tuple[Entry, ...]] = {}
+    for name, items in _group_at(document, "signals").items():
+        if name not in INPUT_INDEX:
+            text = f"the plant has no input '{name}'{suggestion(name, INPUT_INDEX)}"
+            reading.note(document, ("signals", name), text)
+        elif isinstance(items, list):
+            pairs = [pair if isinstance(pair, list) else [] for pair in items]
+            signal = INPUTS[INPUT_INDEX[name]]
+            found[INPUT_INDEX[name]] = _entries_of(reading, document, signal, pairs)
+    return found
+
+
+def _entries_of(reading: Reading, document: Document, signal: Signal, pairs: Sequence[list[Any]]) -> tuple[Entry, ...]:
+    entries: list[Entry] = []
+    for index, pair in enumerate(pairs):
+        if len(pair) != 2:
+            continue
+        location = ("signals", signal.name, index)
+        instant = reading.check(document, (*location, 0), {"time": pair[0]}, _Instant)
+        entry = _entry(reading, document, (*location, 1), signal)
+        if instant is None or entry is None:
+            continue
+        if entries and instant.time <= entries[-1].time_s:
+            reading.note(document, location, f"time {instant.time} s must come after {entries[-1].time_s} s")
+            continue
+        entries.append(Entry(instant.time, *entry, place="{}:{}".format(*document.place(location))))
+    return tuple(entries)
+
+
+def _entry(reading: Reading, document: Document, location: Location, signal: Signal) -> tuple[float, float] | None:
+    """Return the written value and the time over which it is reached."""
+    written, ramp_s = document.at(location), 0.0
+    if isinstance(written, dict):
+        ramp = reading.take(document, location, _Ramp)
+        if ramp is None:
+            return None
+        written, ramp_s = ramp.ramp_to, ramp.seconds
+    try:
+        if ramp_s and signal.kind != "real":
+            raise ValueError(f"{signal.name} is a {signal.kind} and cannot follow a ramp; give it a value")
+        value = signal_value(signal, written)
+        if ramp_s and _is_no_quantity(signal, value):
+            raise ValueError(f"{signal.name} cannot ramp to '{_SAME}'; ramp to a number from 0 on, then say '{_SAME}'")
+        return value, ramp_s
+    except ValueError as error:
+        reading.note(document, location, str(error))
+        return None
+
+
+def _is_no_quantity(signal: Signal, value: float) -> bool:
+    """Say whether a value stands for that of another signal, which no ramp can lead to or from."""
+    return _SAME in dict(signal.names) and value < 0.0
+
+
+def _apply(column: NDArray[np.float64], entry: Entry, step_ns: int, signal: Signal) -> None:
+    """Write one entry over what came before it."""
+    first, ticks = (round(seconds * SECOND_NS / step_ns) for seconds in (entry.time_s, entry.ramp_s))
+    if first >= len(column):
+        return
+    if ticks and _is_no_quantity(signal, column[first]):
+        text = f"{signal.name} is '{_SAME}' when its ramp at {entry.time_s:g} s begins; give it a value before"
+        raise Failure(": ".join(part for part in (entry.place, text) if part))
+    ramp = np.linspace(column[first], entry.value, ticks, endpoint=False)[: len(column) - first]
+    column[first:] = entry.value
+    column[first : first + len(ramp)] = ramp

@@ -1,1 +1,0 @@
-"""Networks in place of physics: their evaluation in compiled code; they are trained in hilplant/train."""

@@ -1,0 +1,1 @@
+"""A private vcan0, where the kernel has none in User Mode Linux."""
