@@ -15,7 +15,32 @@ Seconds = Annotated[
 JsonFile = Annotated[Path | None, typer.Option("--json", help="write the figures to this file")]
 Channel = Annotated[str | None, typer.Option(help="use this channel instead of the bench's, such as can0")]
 
+DataNames = Annotated[
+    list[str],
+    typer.Argument(
+        help="recordings, each FILE@dry or FILE@wet, with ,slow or ,fast behind where no column says it",
+        metavar="DATA...",
+    ),
+]
+BenchOption = Annotated[str, typer.Option("--bench", help="a bench file, or the name of a shipped bench")]
+Columns = Annotated[str, typer.Option(help="role=NAME[unit],...: time, voltage, current, park, fast, on")]
+Frames = Annotated[str | None, typer.Option(help="bus database, or bench, that reads a log of CAN frames")]
+Out = Annotated[Path, typer.Option(help="folder for the trained file, the report and its plots")]
+Seed = Annotated[int, typer.Option(min=0, help="where all random numbers begin; the same seed gives the same file")]
+
 DEFAULT = "default"
+PICTURES = (".png", ".svg", ".pdf")
+
+
+def drawable(path: Path) -> Path:
+    """Refuse a picture that cannot be written, before any work is done for it."""
+    if path.suffix.lower() not in PICTURES:
+        raise Failure(f"{path}: the ending must be one of {', '.join(PICTURES)}")
+    claim_beside(path)
+    return path
+
+
+Picture = Annotated[Path, typer.Argument(help=f"picture to write: {', '.join(PICTURES)}", callback=drawable)]
 
 
 def flat(record: dict[str, Any]) -> dict[str, Any]:
@@ -33,6 +58,12 @@ def claim(path: Path | None) -> None:
     """Refuse a file that cannot be written before something long begins."""
     if path is not None:
         _write(path, "")
+
+
+def claim_beside(path: Path | None) -> None:
+    """Refuse a folder that is not there before something long begins; what is in a file stays until it is replaced."""
+    if path is not None and not path.resolve().parent.is_dir():
+        raise Failure(f"{path}: cannot be written: there is no folder {path.resolve().parent}")
 
 
 def write_json(path: Path | None, figures: dict[str, Any]) -> None:

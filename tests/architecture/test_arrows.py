@@ -13,7 +13,7 @@ ARROWS: dict[str, set[str]] = {
     "bus": {"units", "signals", "failure"},
     "control": {"units", "signals", "failure", "jit", "models"},
     "runtime": {"units", "signals", "failure", "jit", "models", "control", "bus"},
-    "recording": {"units", "signals", "failure", "jit", "models", "runtime"},
+    "recording": {"units", "signals", "failure", "atomic_write", "jit", "models", "runtime"},
     "checked_yaml": {"failure", "resources"},
     "bench": {
         "units",
@@ -50,7 +50,7 @@ CLOCK_FILES = {
     "train/motor_fit.py": {"perf_counter"},
     "train/torque_study.py": {"perf_counter"},
 }
-START_TIME_FILES = {"recording/recorder.py", "cli/identification.py"}
+START_TIME_FILES = {"recording/recorder.py", "cli/commands/identify.py"}
 
 
 def test_every_import_follows_an_arrow(sources: list[Any]) -> None:

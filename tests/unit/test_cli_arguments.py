@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from hilplant.cli.main import main as cli
+from hilplant.cli import main as cli
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *words: object) -> int:

@@ -1,0 +1,28 @@
+"""`hilplant control`."""
+
+from typing import Annotated
+
+import typer
+
+from hilplant.cli.groups import command_app
+from hilplant.cli.options import DEFAULT, BenchName, Channel, Seconds
+
+app = command_app()
+
+
+@app.command(epilog="Example: hilplant control default --controller cascade --reference 0:3.14,10:3.77")
+def control(
+    bench: BenchName = DEFAULT,
+    controller: Annotated[str, typer.Option(help="name of the controller; a wrong one lists all")] = "cascade",
+    reference: Annotated[str, typer.Option(help="wanted crank speed: RAD_S, or TIME:RAD_S,...")] = "3.14",
+    seconds: Seconds = None,
+    channel: Channel = None,
+) -> None:
+    """Be a velocity controller, a CAN node of its own.
+
+    It commands the supply voltage and both relays, and ticks with the plant's speed message. With _sensorless behind
+    its name, as in pid_sensorless, a controller uses voltage, current and park switch only.
+    """
+    from hilplant.ecu.velocity_command import control_command
+
+    raise typer.Exit(control_command(bench, controller, reference, seconds, channel))

@@ -1,0 +1,24 @@
+"""`hilplant doctor`."""
+
+import re
+
+from hilplant.cli.groups import command_app
+from hilplant.cli.options import (
+    JsonFile,
+    write_json,
+)
+
+app = command_app()
+
+
+@app.command(epilog="Example: hilplant doctor")
+def doctor(json_file: JsonFile = None) -> None:
+    """Say what helps or hinders real time and CAN here.
+
+    With the command that mends it.
+    """
+    from hilplant.doctor import examine, print_findings
+
+    findings = examine()
+    print_findings(findings)
+    write_json(json_file, {re.sub(r"\W+", "_", finding.name).lower(): finding.state for finding in findings})

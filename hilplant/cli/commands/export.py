@@ -1,0 +1,17 @@
+"""`hilplant export`."""
+
+from pathlib import Path
+
+import typer
+
+from hilplant.cli.groups import command_app
+
+app = command_app()
+
+
+@app.command(epilog="Example: hilplant export run.hilrec run.mf4")
+def export(recording: Path, out: Path) -> None:
+    """Convert a recording to .mf4, .blf, .asc, .csv or .parquet."""
+    from hilplant.recording.export import export as export_recording
+
+    typer.echo(export_recording(recording, out))

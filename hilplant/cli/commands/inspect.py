@@ -1,0 +1,39 @@
+"""`hilplant inspect`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hilplant.cli.groups import command_app
+from hilplant.cli.options import (
+    JsonFile,
+    claim,
+    write_json,
+)
+
+app = command_app()
+
+
+@app.command(
+    short_help="Say what is wrong with a measurement, and what it shows.",
+    epilog='Example: hilplant inspect rig.csv --columns "voltage=U1,current=I1[mA],park=PS"',
+)
+def inspect(  # noqa: PLR0913, PLR0917
+    data: Path,
+    columns: Annotated[str, typer.Option(help="role=NAME[unit],...: time, voltage, current, park, fast, on")] = "",
+    frames: Annotated[str | None, typer.Option(help="bus database, or bench, that reads a log of CAN frames")] = None,
+    mode: Annotated[str | None, typer.Option(help="slow or fast, where no column says it")] = None,
+    gear_ratio: Annotated[float, typer.Option(min=1.0, help="turns of the motor in one turn of the crank")] = 63.0,
+    json_file: JsonFile = None,
+) -> None:
+    """Say what is wrong with a measurement, what was done to it, and what motor it shows.
+
+    Exit code 0 when it will do for identification, else 1.
+    """
+    from hilplant.identify.command import Wish, inspect_data
+
+    claim(json_file)
+    good, figures = inspect_data(Wish(data, columns, frames, mode, gear_ratio))
+    write_json(json_file, figures)
+    raise typer.Exit(0 if good else 1)

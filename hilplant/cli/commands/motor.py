@@ -1,0 +1,28 @@
+"""`hilplant motor`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hilplant.cli.groups import command_app
+from hilplant.cli.options import JsonFile, claim, claim_beside, write_json
+
+app = command_app()
+
+
+@app.command(epilog="Example: hilplant motor my_readings.yaml --out my_motor.yaml")
+def motor(
+    readings: Annotated[Path, typer.Argument(help="readings on a bench, or a data sheet, in YAML", metavar="READINGS")],
+    out: Annotated[Path, typer.Option(help="motor file to write")],
+    json_file: JsonFile = None,
+) -> None:
+    """Make a motor file from readings or a data sheet.
+
+    With the standard error of each parameter; docs/identification.md says what the file of readings holds.
+    """
+    from hilplant.motor_bench.motor_command import motor_from_readings
+
+    claim_beside(out)
+    claim(json_file)
+    write_json(json_file, motor_from_readings(readings, out))

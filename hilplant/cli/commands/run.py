@@ -1,0 +1,51 @@
+"""`hilplant run`."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hilplant.cli.groups import command_app
+from hilplant.cli.options import (
+    DEFAULT,
+    BenchName,
+    Channel,
+    JsonFile,
+    Seconds,
+    claim,
+    flat,
+    write_json,
+)
+from hilplant.failure import Failure
+
+app = command_app()
+
+
+@app.command(epilog="Example: hilplant run default --channel can0 --record run.hilrec")
+def run(  # noqa: PLR0913, PLR0917
+    bench: BenchName = DEFAULT,
+    seconds: Seconds = None,
+    record: Annotated[Path | None, typer.Option(help="record every tick and every frame to this file")] = None,
+    channel: Channel = None,
+    controller: Annotated[str | None, typer.Option(help="a velocity controller inside the loop, by its name")] = None,
+    reference: Annotated[
+        str | None, typer.Option(help="its wanted crank speed: RAD_S, or TIME:RAD_S,...  [default: 3.14]")
+    ] = None,
+    json_file: JsonFile = None,
+) -> None:
+    """Serve a bench on its CAN interface.
+
+    Ends when the time is up, or on SIGTERM or Ctrl-C. With --controller, relays and supply are commanded inside the
+    loop in every tick, and not by frames; docs/control.md tells the names.
+    """
+    from hilplant.daemon import Inside, run_daemon
+
+    if reference is not None and controller is None:
+        raise Failure("--reference is what a controller is asked for: give --controller NAME with it")
+    claim(json_file)
+    inside = None if controller is None else Inside(controller, reference or "3.14")
+    summary = run_daemon(bench, seconds, record, channel, inside)
+    missing = " | ".join(f"{given.name}: {given.mend}" for given in summary.privileges if not given.granted)
+    write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))
+    raise typer.Exit(1 if summary.stopped_by_overrun or not summary.recording_complete else 0)

@@ -1,0 +1,31 @@
+"""`hilplant study control`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hilplant.cli.groups import command_app
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, claim, write_json
+
+app = command_app()
+
+
+@app.command(
+    short_help="Compare all velocity controllers, section 7.2.",
+    epilog="Example: hilplant study control --out study --json study.json",
+)
+def control(
+    bench: BenchName = DEFAULT,
+    out: Annotated[Path | None, typer.Option(help="folder for the pictures")] = None,
+    search: Annotated[bool, typer.Option("--search", help="search better gains instead; takes minutes")] = False,
+    json_file: JsonFile = None,
+) -> None:
+    """Put all velocity controllers through the test of section 7.2.
+
+    With the speed sensor and without it, and through an hour of rain.
+    """
+    from hilplant.thesis.control_command import control_study
+
+    claim(json_file)
+    write_json(json_file, control_study(bench, out, search))

@@ -1,0 +1,21 @@
+"""`hilplant study wiping`."""
+
+from hilplant.cli.groups import command_app
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, claim, write_json
+
+app = command_app()
+
+
+@app.command(
+    short_help="Tell cycles a minute and currents, 9 to 16 V.",
+    epilog="Example: hilplant study wiping default",
+)
+def wiping(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
+    """Tell cycles a minute and currents from 9 to 16 V, dry and wet.
+
+    With the three figures of FMVSS 104 beside them.
+    """
+    from hilplant.thesis.mechanics_command import wiping_study
+
+    claim(json_file)
+    write_json(json_file, wiping_study(bench))

@@ -1,0 +1,24 @@
+"""`hilplant train polynomial`."""
+
+from pathlib import Path
+
+from hilplant.cli.groups import command_app
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out, claim, write_json
+
+app = command_app()
+
+
+@app.command(epilog="Example: hilplant train polynomial linkage_alone --out polynomial")
+def polynomial(
+    bench: BenchName = DEFAULT,
+    out: Out = Path("trained-polynomial"),
+    json_file: JsonFile = None,
+) -> None:
+    """Fit the no-load torque of the linkage, section 6.3.
+
+    Two polynomials and two constants, by the costs (6.4) and (6.5).
+    """
+    from hilplant.train.command import train_polynomial as run
+
+    claim(json_file)
+    write_json(json_file, run(bench, out))

@@ -1,0 +1,28 @@
+"""`hilplant train tables`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hilplant.cli.groups import command_app
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out, claim, write_json
+
+app = command_app()
+
+
+@app.command(epilog="Example: hilplant train tables default --bound 1e-8 --out tables")
+def tables(
+    bench: BenchName = DEFAULT,
+    bound: Annotated[float, typer.Option(min=1e-10, max=1.0, help="largest error, by the largest value")] = 1e-8,
+    out: Out = Path("trained-tables"),
+    json_file: JsonFile = None,
+) -> None:
+    """Tabulate positions, velocities and accelerations, section 6.2.
+
+    With as few knots as keep all of them within a bound.
+    """
+    from hilplant.train.command import train_tables as run
+
+    claim(json_file)
+    write_json(json_file, run(bench, bound, out))
