@@ -16,9 +16,12 @@ from hilplant.checked_yaml.checked import Checked, NotNegative, Positive
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.checked_yaml.reading import Reading
 from hilplant.checked_yaml.yaml_reader import Document, Location
+from hilplant.ecu.stalk import Turn
 from hilplant.failure import Failure
 from hilplant.signals import INPUT_INDEX, INPUTS, Signal
+from hilplant.simulation.scenario_sections import read_expectations, read_stalk
 from hilplant.units import SECOND_NS
+from hilplant.verdicts.binding import Placed
 
 #: Name of the value by which a signal takes that of another.
 _SAME = "same"
@@ -29,8 +32,13 @@ _Pair = Annotated[list[Any], Field(min_length=2, max_length=2)]
 class _ScenarioFile(Checked):
     seconds: Positive
     title: str = ""
+    requirement: str = ""
+    bench: Annotated[str | None, Field(min_length=1)] = None
     initial: OptionalGroup
     signals: Annotated[dict[str, list[_Pair]], Field(default_factory=dict)]
+    stalk: Annotated[list[_Pair], Field(default_factory=list)]
+    marks: Annotated[dict[str, NotNegative], Field(default_factory=dict)]
+    expect: Annotated[list[dict[str, Any]], Field(default_factory=list)]
 
 
 class _Ramp(Checked):
@@ -54,11 +62,23 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """Entries of each named input by its index, and what differs from the bench's initial state."""
+    """Entries of each named input by its index, and what differs from the bench's initial state.
+
+    Time 0 is the first tick. `stalk` are the driver's movements, `marks` times [s] with names, `expect` what is
+    expected of the run; `title`, `requirement`, `bench` as written; `path` and `text` are the file's.
+    """
 
     seconds: float
     initial: dict[str, float]
     entries: dict[int, tuple[Entry, ...]]
+    stalk: tuple[Turn, ...] = ()
+    marks: dict[str, float] = field(default_factory=dict)
+    expect: tuple[Placed, ...] = ()
+    title: str = ""
+    requirement: str = ""
+    bench: str | None = None
+    path: Path = Path()
+    text: str = ""
 
     def input_rows(self, input_row: NDArray[np.float64], step_ns: int) -> NDArray[np.float64]:
         """Return the inputs of every tick; times are rounded to ticks, unnamed inputs keep `input_row`.
@@ -88,16 +108,30 @@ def load_scenario(name: str | Path) -> Scenario:
 
     """
     reading = Reading()
-    document = reading.named_file(resources.named("scenarios", name))
+    path = resources.named("scenarios", name)
+    document = reading.named_file(path)
     if document.problems or not reading.sources:
         reading.raise_problems()
     top = reading.take(document, (), _ScenarioFile)
     initial = reading.check(document, ("initial",), _group_at(document, "initial"), InitialSection)
     entries = _entries(reading, document)
+    stalk, expect = read_stalk(reading, document), read_expectations(reading, document)
     reading.raise_problems()
     if top is None or initial is None:
         raise AssertionError("a description that failed left no problem behind")
-    return Scenario(top.seconds, initial.model_dump(include=initial.model_fields_set), entries)
+    return Scenario(
+        top.seconds,
+        initial.model_dump(include=initial.model_fields_set),
+        entries,
+        stalk,
+        top.marks,
+        expect,
+        top.title,
+        top.requirement,
+        top.bench,
+        path,
+        reading.sources[document.file],
+    )
 
 
 def _group_at(document: Document, key: str) -> dict[str, Any]:

@@ -27,6 +27,7 @@ ARROWS: dict[str, set[str]] = {
         "mechanics",
         "bus",
     },
+    "verdicts": {"checked_yaml"},
     "doctor": {"jit"},
 }
 #: The stand-in ECU decides without knowing that there is a bus, a bench or a clock.

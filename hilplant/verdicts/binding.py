@@ -1,0 +1,291 @@
+"""Written expectations -> rules in ticks over known signals; a name that nobody knows is a problem with its line."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from pydantic import ValidationError
+
+from hilplant.checked_yaml.problems import BenchError, Problem, suggestion
+from hilplant.verdicts import written as w
+from hilplant.verdicts.expectations import (
+    Comes,
+    Condition,
+    Count,
+    Edge,
+    Expectation,
+    FrameRule,
+    Frames,
+    Holds,
+    Level,
+    Response,
+    Rule,
+    Settles,
+    Stays,
+    Window,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class KnownSignal:
+    """What is known of a signal: its unit, whether it has few values only, and the numbers of its labels."""
+
+    unit: str = ""
+    discrete: bool = False
+    labels: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class KnownMessage:
+    """What is known of a message: its cycle [ms], 0 where the database states none, and whether it is protected."""
+
+    cycle_ms: float = 0.0
+    protected: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """All that expectations may name, and the length of a tick and of the run [s]."""
+
+    step_s: float
+    seconds: float
+    signals: Mapping[str, KnownSignal]
+    messages: Mapping[str, KnownMessage]
+    marks: Mapping[str, float] = field(default_factory=dict)
+
+    def ticks(self, seconds: float) -> int:
+        """Return how many ticks a time takes, the last one begun."""
+        return math.ceil(seconds / self.step_s - 1e-6)
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """A written expectation with the file and line at which it stands."""
+
+    entry: w.Written
+    file: str = "python"
+    line: int = 0
+
+    @property
+    def place(self) -> str:
+        """File and line as messages show them."""
+        return f"{self.file}:{self.line}" if self.line else self.file
+
+
+def bind(placed: Sequence[Placed], known: Known) -> list[Expectation]:
+    """Return the expectations in the order in which they stand.
+
+    Raises
+    ------
+    BenchError
+        With every name that nobody knows, and every window that lies beyond the run.
+
+    """
+    problems: list[Problem] = []
+    bound: list[Expectation] = []
+    for each in placed:
+        try:
+            bound.append(_bound(each, known))
+        except ValueError as error:
+            problems.append(Problem(each.file, each.line, str(error)))
+    if problems:
+        raise BenchError(sorted(problems))
+    return bound
+
+
+def _bound(placed: Placed, known: Known) -> Expectation:
+    entry = placed.entry
+    window = Window(
+        tuple(_steps(entry.after, known)), tuple(_steps(entry.until, known)), _condition(entry.while_ or {}, known)
+    )
+    rule = _rule(entry, known)
+    _refuse_beyond(entry, rule, window, known)
+    text = entry.title or entry.text()
+    expectation = Expectation(rule, window, text, placed.place)
+    return Expectation(rule, window, text, placed.place, _unit(expectation, known))
+
+
+def _rule(entry: w.Written, known: Known) -> Rule:
+    return _RULES[type(entry)](entry, known)
+
+
+def _holds(entry: w.AlwaysEntry | w.NeverEntry, known: Known) -> Rule:
+    return Holds(_subject(entry, known), isinstance(entry, w.NeverEntry))
+
+
+def _comes(entry: w.WithinEntry, known: Known) -> Rule:
+    return Comes(_subject(entry, known), _floor(entry.within, known))
+
+
+def _edge(entry: w.RisesEntry | w.FallsEntry, known: Known) -> Rule:
+    edge = Edge(_name(entry.subject, known), isinstance(entry, w.RisesEntry), entry.through)
+    return Comes((edge,), _floor(entry.within, known))
+
+
+def _settles(entry: w.SettlesEntry, known: Known) -> Rule:
+    limits = w.Limits(equals=entry.to, tolerance=entry.tolerance)
+    hold = None if entry.hold is None else known.ticks(entry.hold)
+    return Settles(_level(entry.settles, limits, known), _floor(entry.by, known), hold)
+
+
+def _stays(entry: w.StaysEntry, known: Known) -> Rule:
+    hold = None if entry.hold is None else known.ticks(entry.hold)
+    return Stays(_name(entry.stays, known), entry.tolerance, hold)
+
+
+def _response(entry: w.ResponseEntry, known: Known) -> Rule:
+    return Response(_condition(entry.response, known), _condition(entry.then, known), _floor(entry.within, known))
+
+
+def _count(entry: w.CountEntry, known: Known) -> Rule:
+    return Count(_condition(entry.count, known), *_bounds(entry.limits, 0.0, None))
+
+
+def _frames(entry: w.FramesEntry, known: Known) -> Rule:
+    if entry.frames not in known.messages:
+        near = suggestion(entry.frames, known.messages)
+        raise ValueError(f"the bench's database has no message '{entry.frames}'{near}")
+    message, name = known.messages[entry.frames], entry.rules[0]
+    if name in ("jitter_ms", "missing") and not message.cycle_ms:
+        raise ValueError(f"the database states no cycle time of {entry.frames}; use period_ms: [LOWEST, HIGHEST]")
+    if name in ("counter", "crc") and not message.protected:
+        raise ValueError(f"{entry.frames} has no protection in the bench, so that it has no counter and no CRC")
+    rule: dict[str, FrameRule] = {"period_ms": "period", "jitter_ms": "jitter"}
+    if entry.period_ms is not None:
+        return Frames(entry.frames, "period", *entry.period_ms)
+    highest = {"jitter_ms": entry.jitter_ms, "missing": entry.missing}.get(name, entry.wrong)
+    kind: FrameRule = rule.get(name) or ("missing" if name == "missing" else "counter" if name == "counter" else "crc")
+    return Frames(entry.frames, kind, 0.0, float(highest or 0.0))
+
+
+def _subject(entry: w.Written, known: Known) -> Condition:
+    subject = entry.subject
+    if isinstance(subject, str):
+        return (_level(subject, entry.limits, known),)
+    return _condition(subject, known)
+
+
+def _condition(parts: Mapping[str, Any], known: Known) -> Condition:
+    return tuple(_part(name, part, known) for name, part in parts.items())
+
+
+def _part(name: str, part: Any, known: Known) -> Level | Edge:
+    if part in ("rises", "falls"):
+        return Edge(_name(name, known), part == "rises")
+    if not isinstance(part, dict):
+        return _level(name, w.Limits(equals=part), known)
+    crossing = {"rises", "falls"} & set(part)
+    if crossing:
+        level = part[crossing.pop()]
+        if len(part) > 1 or isinstance(level, bool) or not isinstance(level, int | float):
+            raise ValueError(f"{name}: write {{rises: LEVEL}} or {{falls: LEVEL}} alone")
+        return Edge(_name(name, known), "rises" in part, float(level))
+    try:
+        limits = w.Limits.model_validate(part)
+    except ValidationError as error:
+        raise ValueError(f"{name}: {error.errors()[0]['msg']}") from None
+    if not limits.stated:
+        raise ValueError(f"{name}: say what of it: below, above, between or equals")
+    return _level(name, limits, known)
+
+
+def _level(name: str, limits: w.Limits, known: Known) -> Level:
+    signal = known.signals[_name(name, known)]
+    tolerance = limits.tolerance if limits.tolerance is not None else 0.5 if signal.discrete else 0.0
+    lowest, highest = _bounds(limits, tolerance, (name, signal))
+    return Level(name, lowest, highest)
+
+
+def _bounds(limits: w.Limits, tolerance: float, named: tuple[str, KnownSignal] | None) -> tuple[float, float]:
+    if limits.equals is not None:
+        wanted = _number(limits.equals, named)
+        tolerance = tolerance if named else limits.tolerance or 0.0
+        return wanted - tolerance, wanted + tolerance
+    lowest = -math.inf if limits.above is None else _number(limits.above, named)
+    highest = math.inf if limits.below is None else _number(limits.below, named)
+    if limits.between is not None:
+        lowest, highest = max(lowest, limits.between[0]), min(highest, limits.between[1])
+    return lowest, highest
+
+
+def _number(value: Any, named: tuple[str, KnownSignal] | None) -> float:
+    if not isinstance(value, str):
+        return float(value)
+    labels = {} if named is None else {label.lower(): number for label, number in named[1].labels.items()}
+    if value.lower() not in labels:
+        told = suggestion(value.lower(), labels) if labels else "; it has numbers only"
+        raise ValueError(f"{named[0] if named else 'count'} has no value '{value}'{told}")
+    return labels[value.lower()]
+
+
+def _name(name: str, known: Known) -> str:
+    if name not in known.signals:
+        near = suggestion(name, known.signals)
+        raise ValueError(f"no signal '{name}'{near if near.endswith('?') else ''}; docs/testing.md lists what there is")
+    return name
+
+
+def _steps(instants: Any, known: Known) -> Iterator[int | Condition]:
+    for instant in instants if isinstance(instants, list) else [] if instants is None else [instants]:
+        if isinstance(instant, dict):
+            yield _condition(instant, known)
+        elif isinstance(instant, str):
+            if instant not in known.marks:
+                raise ValueError(f"no mark '{instant}'{suggestion(instant, known.marks)}")
+            yield known.ticks(known.marks[instant])
+        elif isinstance(instant, bool) or instant < 0:
+            raise ValueError(f"a time is seconds from the first tick on, not {str(instant).lower()}")
+        else:
+            yield known.ticks(instant)
+
+
+def _floor(seconds: float, known: Known) -> int:
+    return math.floor(seconds / known.step_s + 1e-6)
+
+
+def _refuse_beyond(entry: w.Written, rule: Rule, window: Window, known: Known) -> None:
+    """Refuse a wait whose end lies beyond the run's, as far as its beginning is known."""
+    after = window.after[0] if window.after else 0
+    if math.isinf(known.seconds) or not isinstance(after, int) or len(window.after) > 1:
+        return
+    need = after + _longest(rule)
+    if need >= known.ticks(known.seconds):
+        raise ValueError(
+            f"{entry.key}: its time ends at {need * known.step_s:g} s, the scenario at {known.seconds:g} s; "
+            "make the scenario longer"
+        )
+
+
+def _longest(rule: Rule) -> int:
+    """Return how many ticks a rule takes from the window's begin; 0 where it takes what there is."""
+    if isinstance(rule, Comes):
+        return rule.ticks
+    if isinstance(rule, Settles):
+        return rule.by + (rule.hold or 0)
+    return rule.ticks or 0 if isinstance(rule, Stays) else 0
+
+
+_RULES: dict[type[w.Written], Callable[[Any, Known], Rule]] = {
+    w.AlwaysEntry: _holds,
+    w.NeverEntry: _holds,
+    w.WithinEntry: _comes,
+    w.RisesEntry: _edge,
+    w.FallsEntry: _edge,
+    w.SettlesEntry: _settles,
+    w.StaysEntry: _stays,
+    w.ResponseEntry: _response,
+    w.CountEntry: _count,
+    w.FramesEntry: _frames,
+}
+
+
+def _unit(expectation: Expectation, known: Known) -> str:
+    rule = expectation.rule
+    if isinstance(rule, Frames):
+        return "ms" if rule.rule in ("period", "jitter") else "frames"
+    if isinstance(rule, Count):
+        return "times"
+    judged = rule.then if isinstance(rule, Response) else expectation.condition
+    units = {known.signals[part.signal].unit if isinstance(part, Level) else "" for part in judged}
+    return units.pop() if len(units) == 1 else ""
