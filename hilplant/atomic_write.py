@@ -1,6 +1,7 @@
 """Files that are written whole or not at all: a failure, a full disk or Ctrl-C leaves what was there before."""
 
 import errno
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -34,6 +35,49 @@ def whole_file(path: Path) -> Iterator[Path]:
         passing.unlink(missing_ok=True)
 
 
+def cannot_be_written(path: Path, error: OSError) -> Failure:
+    """Return the one way to say that a file or folder cannot be written."""
+    return Failure(f"{path}: cannot be written: {error.strerror or error}")
+
+
+def make_folder(path: Path) -> Path:
+    """Make a folder, and those above it, where there is none; return it.
+
+    Raises
+    ------
+    Failure
+        When it cannot be made.
+
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise cannot_be_written(path, error) from error
+    return path
+
+
+def claim(path: Path | None) -> None:
+    """Refuse a file that cannot be written, before something long begins; None is no file.
+
+    What is in the file stays until it is replaced.
+
+    Raises
+    ------
+    Failure
+        When its folder is not there, or folder or file may not be written.
+
+    """
+    if path is None:
+        return
+    folder = path.resolve().parent
+    if not folder.is_dir():
+        raise cannot_be_written(path, OSError(errno.ENOENT, f"there is no folder {folder}"))
+    if path.is_dir():
+        raise cannot_be_written(path, OSError(errno.EISDIR, os.strerror(errno.EISDIR)))
+    if not os.access(path if path.exists() else folder, os.W_OK):
+        raise cannot_be_written(path, OSError(errno.EACCES, os.strerror(errno.EACCES)))
+
+
 def write_text(path: Path, text: str) -> None:
     """Write a text as it is, whole or not at all.
 
@@ -47,4 +91,4 @@ def write_text(path: Path, text: str) -> None:
         with whole_file(path) as passing:
             passing.write_text(text, encoding="utf-8", newline="\n")
     except OSError as error:
-        raise Failure(f"{path}: cannot be written ({error.strerror})") from error
+        raise cannot_be_written(path, error) from error

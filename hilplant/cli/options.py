@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from hilplant.atomic_write import claim, write_text
 from hilplant.failure import Failure
 
 BenchName = Annotated[str, typer.Argument(help="a bench file, or the name of a shipped bench", metavar="BENCH")]
@@ -36,7 +37,7 @@ def drawable(path: Path) -> Path:
     """Refuse a picture that cannot be written, before any work is done for it."""
     if path.suffix.lower() not in PICTURES:
         raise Failure(f"{path}: the ending must be one of {', '.join(PICTURES)}")
-    claim_beside(path)
+    claim(path)
     return path
 
 
@@ -54,26 +55,7 @@ def flat(record: dict[str, Any]) -> dict[str, Any]:
     return flat
 
 
-def claim(path: Path | None) -> None:
-    """Refuse a file that cannot be written before something long begins."""
-    if path is not None:
-        _write(path, "")
-
-
-def claim_beside(path: Path | None) -> None:
-    """Refuse a folder that is not there before something long begins; what is in a file stays until it is replaced."""
-    if path is not None and not path.resolve().parent.is_dir():
-        raise Failure(f"{path}: cannot be written: there is no folder {path.resolve().parent}")
-
-
 def write_json(path: Path | None, figures: dict[str, Any]) -> None:
     """Write figures to a file, if there is one."""
     if path is not None:
-        _write(path, json.dumps(figures, indent=2, default=str) + "\n")
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise Failure(f"{path}: cannot be written ({error.strerror})") from error
+        write_text(path, json.dumps(figures, indent=2, default=str) + "\n")

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from hilplant.bench import Bench, load_bench
 from hilplant.bus.transport import open_transport
-from hilplant.daemon import recording
+from hilplant.cli.actions.run import recording
 from hilplant.demo.sequence import Sequence
 from hilplant.ecu.node import EcuNode, run_ecu
 from hilplant.ecu.settings import controller_settings

@@ -3,8 +3,6 @@
 import math
 from pathlib import Path
 
-from rich.console import Console
-
 from hilplant.demo.figures import Figures, SpeedFigures, Stop, figures
 from hilplant.plots.recording import plot_recording
 from hilplant.recording.export import signal_columns
@@ -20,14 +18,15 @@ _NEXT = (
 )
 
 
-def summarise(run: Summary, recording: Path, plot: Path, console: Console) -> None:
-    """Draw the recording and print what it shows."""
+def summarise(run: Summary, recording: Path, plot: Path) -> list[str]:
+    """Draw the recording and return lines that say what it shows."""
     columns, _ = signal_columns(read_recording(recording))
     plot_recording(recording, plot)
     lines = [*wiping_lines(figures(columns)), *loop_lines(run)]
     lines += [f"recording     {recording}", f"plot          {plot}", "", "next:"]
-    lines += [line for command, what in _NEXT for line in (f"  # {what}", f"  {command.format(recording=recording)}")]
-    console.print("\n".join(lines), highlight=False, markup=False, soft_wrap=True)
+    return lines + [
+        line for command, what in _NEXT for line in (f"  # {what}", f"  {command.format(recording=recording)}")
+    ]
 
 
 def wiping_lines(found: Figures) -> list[str]:

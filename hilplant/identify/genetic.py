@@ -38,7 +38,7 @@ class Settings(NamedTuple):
     enough: float = 0.0
 
 
-class Progress(NamedTuple):
+class Generation(NamedTuple):
     """One generation: evaluations so far, the lowest cost so far, the mean of the population."""
 
     evaluations: int
@@ -46,16 +46,19 @@ class Progress(NamedTuple):
     mean: float
 
 
+OnGeneration = Callable[[Generation], None]
+
+
 class Outcome(NamedTuple):
     """What a search found: the best values, their cost, and how it came there."""
 
     values: Samples
     cost: float
-    history: tuple[Progress, ...]
+    history: tuple[Generation, ...]
 
 
 def genetic(
-    evaluate: Evaluate, space: Space, settings: Settings, seed: int, told: Callable[[Progress], None] = lambda _: None
+    evaluate: Evaluate, space: Space, settings: Settings, seed: int, on_generation: OnGeneration = lambda _: None
 ) -> Outcome:
     """Search the space; the same seed gives the same result, bit for bit."""
     random = np.random.default_rng(seed)
@@ -65,8 +68,8 @@ def genetic(
     for generation in range(settings.generations + 1):
         order = np.argsort(costs, kind="stable")
         people, costs = people[order], costs[order]
-        history.append(Progress(evaluations, float(costs[0]), float(np.mean(costs))))
-        told(history[-1])
+        history.append(Generation(evaluations, float(costs[0]), float(np.mean(costs))))
+        on_generation(history[-1])
         if generation == settings.generations or costs[0] < settings.enough:
             break
         known = {person.tobytes(): cost for person, cost in zip(people, costs, strict=True)}

@@ -10,19 +10,18 @@ from collections.abc import Callable
 import numpy as np
 
 from hilplant.failure import Failure
-from hilplant.identify.genetic import Evaluate, Outcome, Progress, Settings, Space, genetic
+from hilplant.identify.genetic import Evaluate, Generation, OnGeneration, Outcome, Settings, Space, genetic
 from hilplant.measurements.measurement import Samples
 
-Told = Callable[[Progress], None]
-Search = Callable[[Evaluate, Space, Settings, int, Told], Outcome]
+Search = Callable[[Evaluate, Space, Settings, int, OnGeneration], Outcome]
 
 
 class _Watched:
     """Evaluates within the unit cube, keeps the best, and tells of each population."""
 
-    def __init__(self, evaluate: Evaluate, space: Space, told: Told) -> None:
-        self.evaluate, self.space, self.told = evaluate, space, told
-        self.best, self.cost, self.history = space.low, math.inf, list[Progress]()
+    def __init__(self, evaluate: Evaluate, space: Space, on_generation: OnGeneration) -> None:
+        self.evaluate, self.space, self.on_generation = evaluate, space, on_generation
+        self.best, self.cost, self.history = space.low, math.inf, list[Generation]()
         self.evaluations = 0
 
     def __call__(self, shares: Samples) -> Samples:
@@ -32,8 +31,8 @@ class _Watched:
         first = int(np.argmin(costs))
         if costs[first] < self.cost:
             self.best, self.cost = sets[first].copy(), float(costs[first])
-        self.history.append(Progress(self.evaluations, self.cost, float(np.mean(costs))))
-        self.told(self.history[-1])
+        self.history.append(Generation(self.evaluations, self.cost, float(np.mean(costs))))
+        self.on_generation(self.history[-1])
         return costs
 
     @property
@@ -46,7 +45,9 @@ def budget(settings: Settings) -> int:
     return settings.population * (settings.generations + 1)
 
 
-def evolution_strategy(evaluate: Evaluate, space: Space, settings: Settings, seed: int, told: Told) -> Outcome:
+def evolution_strategy(
+    evaluate: Evaluate, space: Space, settings: Settings, seed: int, on_generation: OnGeneration
+) -> Outcome:
     """Search by covariance matrix adaptation (package cma), started anew with another seed where it settles early.
 
     It does not keep the order (3.32).
@@ -55,7 +56,7 @@ def evolution_strategy(evaluate: Evaluate, space: Space, settings: Settings, see
         warnings.simplefilter("ignore")  # it warns that optional plots are not installed
         import cma
 
-    watched, most = _Watched(evaluate, space, told), budget(settings)
+    watched, most = _Watched(evaluate, space, on_generation), budget(settings)
     random = np.random.default_rng(seed)
     state = np.random.get_state()  # the package draws from the global generator
     begin = np.full(len(space.low), 0.5)
@@ -75,11 +76,13 @@ def evolution_strategy(evaluate: Evaluate, space: Space, settings: Settings, see
     return watched.outcome
 
 
-def differential_evolution(evaluate: Evaluate, space: Space, settings: Settings, seed: int, told: Told) -> Outcome:
+def differential_evolution(
+    evaluate: Evaluate, space: Space, settings: Settings, seed: int, on_generation: OnGeneration
+) -> Outcome:
     """Search by differential evolution (scipy). It does not keep the order (3.32)."""
     from scipy.optimize import differential_evolution as scipy_search
 
-    watched, random = _Watched(evaluate, space, told), np.random.default_rng(seed)
+    watched, random = _Watched(evaluate, space, on_generation), np.random.default_rng(seed)
     size = len(space.low)
     scipy_search(
         lambda columns: watched(columns.T), [(0.0, 1.0)] * size, init=random.random((settings.population, size)),

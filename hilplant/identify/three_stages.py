@@ -13,9 +13,9 @@ from hilplant.identify.cost import Cost, cost_of
 from hilplant.identify.executor import Executor, evaluator, here
 from hilplant.identify.experiment import Run
 from hilplant.identify.forces import FrictionForce, friction_forces
-from hilplant.identify.genetic import Evaluate, Outcome, Progress, Settings, Space, order_of
+from hilplant.identify.genetic import Evaluate, Generation, OnGeneration, Outcome, Settings, Space, order_of
 from hilplant.identify.local_search import Solution, search
-from hilplant.identify.optimisers import optimiser
+from hilplant.identify.optimisers import budget, optimiser
 from hilplant.identify.parameters import Choice, search_space
 from hilplant.identify.profile import Interval, profile
 from hilplant.identify.residuals import Problem, expected_noise
@@ -23,6 +23,7 @@ from hilplant.identify.uncertainty import Spread, Verdict, spread, verdicts
 from hilplant.identify.validation import Comparison, compare
 from hilplant.measurements.measurement import Samples
 from hilplant.models.records import MODEL_AT
+from hilplant.progress import OnProgress, ProgressReport, unseen
 
 _TABLE_5_7 = Settings()
 
@@ -35,7 +36,7 @@ class Task:
     """What is to be found, from what, and how.
 
     `about` are the values about which the search space is laid; `journal` wraps the evaluation so that a killed run can
-    go on; `told` hears of stage and progress.
+    go on.
     """
 
     bench: Bench
@@ -49,7 +50,7 @@ class Task:
     ordered: bool = True
     executor: Executor = here
     journal: Callable[[Evaluate], Evaluate] = field(default=lambda evaluate: evaluate)
-    told: Callable[[str, Progress | float], None] = field(default=lambda stage, progress: None)
+    on_progress: OnProgress = unseen
 
 
 class Times(NamedTuple):
@@ -96,7 +97,7 @@ def identify(task: Task) -> Identified:
     space = Space(low, high, order_of(task.choice.names) if task.ordered else ())
     computed = _Computed(evaluator(cost, task.executor))
     evaluate = task.journal(computed)
-    outcome = optimiser(task.search)(evaluate, space, task.settings, task.seed, lambda seen: task.told("search", seen))
+    outcome = optimiser(task.search)(evaluate, space, task.settings, task.seed, _search_progress(task))
     clock.append(time.perf_counter())
     solution = refined(task, outcome)
     clock.append(time.perf_counter())
@@ -122,6 +123,17 @@ def identify(task: Task) -> Identified:
     )  # fmt: skip
 
 
+def _search_progress(task: Task) -> OnGeneration:
+    """Return what tells of each generation; the search is complete when its budget of evaluations is spent."""
+    total = budget(task.settings)
+
+    def tell(seen: Generation) -> None:
+        note = f"lowest cost {seen.best:.4g}, {seen.evaluations} evaluations"
+        task.on_progress(ProgressReport("search", seen.evaluations, total, note))
+
+    return tell
+
+
 class _Computed:
     """Counts what is computed and not answered from a journal."""
 
@@ -136,12 +148,17 @@ class _Computed:
 def refined(task: Task, outcome: Outcome) -> Solution:
     """Search on from where stage 2 ended; while that leaves the current unexplained, from the next start as well."""
     expected = expected_noise(task.runs)
+
+    def refined_to(left_a: float) -> None:
+        task.on_progress(refining._replace(note=f"current {left_a:.4g} A rms"))
+
     solutions: list[Solution] = []
+    refining = ProgressReport("refine", budget(task.settings), budget(task.settings))
     usual = np.array([parameter.usual for parameter in task.choice.parameters])
     for values in _starts(task, outcome):
         scale = np.maximum(np.abs(values), 0.01 * usual)
         problem = Problem(task.runs, task.choice, task.bench.tables, expected, scale)
-        solutions.append(search(problem, values, lambda left_a: task.told("refine", left_a)))
+        solutions.append(search(problem, values, refined_to))
         if solutions[-1].noise.current_a < EXPLAINED * expected.current_a:
             break
     return min(solutions, key=lambda solution: solution.noise.current_a)

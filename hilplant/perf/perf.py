@@ -1,13 +1,12 @@
-"""`hilplant perf`: runs the parts, prints their table, returns their figures."""
+"""All benchmarks: runs the parts that are wanted, and returns what each came to."""
 
 from importlib import import_module
-
-from rich.console import Console
+from typing import NamedTuple
 
 from hilplant.failure import Failure
 from hilplant.perf.machine import machine
 from hilplant.perf.results import Measured, NotMeasurable
-from hilplant.perf.table import print_table
+from hilplant.progress import OnProgress, ProgressReport, unseen
 
 #: The parts in their order, and the function that measures each.
 PARTS = {
@@ -27,16 +26,29 @@ PARTS = {
 _ONLY_WHEN_NAMED = ("memory-10h",)
 
 
-def measure_and_print(only: str | None = None) -> dict[str, float | str]:
-    """Measure the parts in `only`, or all; print each figure beside its limit and return the figures."""
+class Benchmarks(NamedTuple):
+    """What was measured on which machine: parts by name in their order."""
+
+    machine: dict[str, float | str]
+    parts: dict[str, Measured]
+
+    @property
+    def figures(self) -> dict[str, float | str]:
+        """The flat figures of machine and parts."""
+        figures = dict(self.machine)
+        for measured in self.parts.values():
+            figures |= measured.figures
+        return figures
+
+
+def measure(only: str | None = None, on_progress: OnProgress = unseen) -> Benchmarks:
+    """Measure the parts in `only`, names with commas between, or all."""
     names = chosen_parts(only)
-    described = machine()
-    parts = {name: _measured(name) for name in names}
-    print_table(parts, "{}, {} cores; {}; Python {}; numba {}; load before {}".format(*described.values()))
-    figures = dict(described)
-    for measured in parts.values():
-        figures |= measured.figures
-    return figures
+    described, parts = machine(), dict[str, Measured]()
+    for done, name in enumerate(names):
+        on_progress(ProgressReport(f"measuring {name}", done, len(names)))
+        parts[name] = _measured(name)
+    return Benchmarks(described, parts)
 
 
 def chosen_parts(only: str | None) -> list[str]:
@@ -54,8 +66,7 @@ def _measured(name: str) -> Measured:
     """Measure one part; what cannot be measured here leaves its reason behind."""
     module, _, function = PARTS[name].partition(".")
     try:
-        with Console(stderr=True).status(f"measuring {name}"):
-            result: Measured = getattr(import_module(f"hilplant.perf.{module}"), function)()
+        result: Measured = getattr(import_module(f"hilplant.perf.{module}"), function)()
     except NotMeasurable as reason:
         return Measured(remarks=[f"not measured: {reason}"])
     return result

@@ -17,7 +17,7 @@ _LIBRARIES = "import can, cantools, numba, numpy, pydantic, typer, yaml"
 _SPLIT = """
 import json, sys, time
 begin = time.perf_counter()
-import hilplant.cli.main, hilplant.daemon
+import hilplant.cli.main, hilplant.cli.actions.run
 imported = time.perf_counter()
 from hilplant.bench import load_bench
 bench = load_bench(sys.argv[1])

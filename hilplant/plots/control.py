@@ -2,14 +2,32 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.control.fuzzy_sets import GREATEST_ERROR_RAD_S, degrees_of_membership, fuzzy_gain_at, gain_shapes
-from hilplant.failure import Failure
-from hilplant.thesis.control_network import Floats
-from hilplant.thesis.control_test import STATES, Run
+from hilplant.plots.picture import save
+
+
+class DrawnRun(Protocol):
+    """A run as it is drawn: its columns by name, each a value a tick."""
+
+    @property
+    def time_s(self) -> Floats:
+        """Time of each tick [s]."""
+
+    @property
+    def reference_rad_s(self) -> Floats:
+        """Wanted crank speed [rad/s]."""
+
+    def __getitem__(self, name: str) -> Floats:
+        """Return an output or input."""
+
+
+#: From when to when [s] something holds.
+Spans = Sequence[tuple[float, float]]
 
 _COLOURS = ("#0b5cad", "#d9730d", "#2a7f3e", "#b3261e")
 _GREY = "#6b7280"
@@ -29,15 +47,8 @@ def _figure(rows: int, height: float) -> tuple[Any, Any]:
     return figure, panels
 
 
-def _save(figure: Any, path: Path) -> None:
-    try:
-        figure.savefig(path, dpi=90)
-    except OSError as error:
-        raise Failure(f"{path}: cannot be written: {error.strerror}") from error
-
-
-def plot_runs(path: Path, title: str, runs: Mapping[str, Run], gains: bool = False) -> None:
-    """Draw speed and voltage of some controllers through the test of 7.2; with `gains`, K below."""
+def plot_runs(path: Path, title: str, runs: Mapping[str, DrawnRun], dry: Spans, gains: bool = False) -> None:
+    """Draw speed and voltage of some controllers through a test with a `dry` screen at times; with `gains`, K below."""
     figure, panels = _figure(3 if gains else 2, 7.0 if gains else 5.2)
     for colour, (name, run) in zip(_COLOURS, runs.items(), strict=False):
         for axes, column in zip(panels, ("crank_speed_rad_s", "supply_v", "gain"), strict=False):
@@ -48,16 +59,11 @@ def plot_runs(path: Path, title: str, runs: Mapping[str, Run], gains: bool = Fal
     panels[0].set_ylim(0.0, 5.6)
     for axes, label in zip(panels, ("crank speed [rad/s]", "voltage [V]", "K"), strict=False):
         axes.set_ylabel(label)
-        _shade_dry(axes)
+        for begin_s, end_s in dry:
+            axes.axvspan(begin_s, end_s, color="#f3ead7", linewidth=0.0, zorder=0)
     panels[-1].set_xlabel("time [s]; shaded: dry screen")
     figure.suptitle(title)
-    _save(figure, path)
-
-
-def _shade_dry(axes: Any) -> None:
-    for begin, end, _, wet in STATES:
-        if wet == 0.0:
-            axes.axvspan(begin, end, color="#f3ead7", linewidth=0.0, zorder=0)
+    save(figure, path, 90)
 
 
 def plot_fuzzy(path: Path) -> None:
@@ -77,7 +83,7 @@ def plot_fuzzy(path: Path) -> None:
     result.set_xlabel("error [rad/s]")
     result.set_ylabel("K")
     figure.suptitle("Fuzzy sets of the error, of K, and K over the error (compare Figures 7-9, 7-10)")
-    _save(figure, path)
+    save(figure, path, 90)
 
 
 def plot_estimates(path: Path, time_s: Floats, speed_rad_s: Floats, estimates: Mapping[str, Floats]) -> None:
@@ -95,10 +101,10 @@ def plot_estimates(path: Path, time_s: Floats, speed_rad_s: Floats, estimates: M
     bottom.set_ylim(-1.0, 1.0)
     bottom.set_xlabel("time [s]; the plant's resistance is 20 % above the believed one")
     figure.suptitle("Speed from voltage and current, slow brush, voltage from 3 to 20 V")
-    _save(figure, path)
+    save(figure, path, 90)
 
 
-def plot_stages(path: Path, run: Run) -> None:
+def plot_stages(path: Path, run: DrawnRun) -> None:
     """Draw the continuous speed from two brushes: reference, speed, voltage, brush; as Figure 7-18 decides."""
     figure, panels = _figure(3, 6.5)
     panels[0].plot(run.time_s, run.reference_rad_s, "k--", linewidth=0.9, label="reference")
@@ -113,10 +119,12 @@ def plot_stages(path: Path, run: Run) -> None:
     panels[2].set_yticks([0, 1], ["no", "yes"])
     panels[-1].set_xlabel("time [s]")
     figure.suptitle("Continuous speed: slow brush, fast above 18 V and back (section 7.6)")
-    _save(figure, path)
+    save(figure, path, 90)
 
 
-def plot_all(folder: Path, runs: Mapping[str, Run], groups: Sequence[tuple[str, str, Sequence[str]]]) -> None:
+def plot_all(
+    folder: Path, runs: Mapping[str, DrawnRun], dry: Spans, groups: Sequence[tuple[str, str, Sequence[str]]]
+) -> None:
     """Draw each group (file name, title, names of runs) into the folder."""
     for name, title, members in groups:
-        plot_runs(folder / f"{name}.png", title, {m: runs[m] for m in members}, "fuzzy" in name)
+        plot_runs(folder / f"{name}.png", title, {m: runs[m] for m in members}, dry, "fuzzy" in name)

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from hilplant.bench.assembly import Bench
-from hilplant.failure import Failure
+from hilplant.plots.picture import figure_with, save
 from hilplant.simulation.crank_torque import WETNESS, Conditions, crank_torque
-from hilplant.thesis.whole_system import CRANK_SPEED_RAD_S, Wipe, five_wipes
+from hilplant.simulation.five_wipes import CRANK_SPEED_RAD_S, Wipe, five_wipes
 from hilplant.units import RAD_PER_DEG, TURN_RAD
 
 #: Crank speeds that are drawn [rev/min].
@@ -44,7 +44,7 @@ def plot_torque(bench: Bench, out_png: str | PathLike[str]) -> None:
     low, high = panels[0].get_ylim()
     panels[0].set_ylim(low, high + 0.18 * (high - low))
     figure.suptitle(f"{bench.name}: torque at the crank, positive when it opposes motion")
-    _save(figure, out_png)
+    save(figure, out_png, 110)
 
 
 def plot_conditions(bench: Bench, out_png: str | PathLike[str]) -> None:
@@ -67,7 +67,7 @@ def plot_conditions(bench: Bench, out_png: str | PathLike[str]) -> None:
     axes.set_ylabel("torque [N m]")
     turns = CRANK_SPEED_RAD_S * 60.0 / TURN_RAD
     figure.suptitle(f"{bench.name}: torque at the crank at an even {turns:g} turns a minute, section 4.6")
-    _save(figure, out_png)
+    save(figure, out_png, 110)
 
 
 def _draw_wipe(axes: Any, second: int, wipe: Wipe) -> None:
@@ -81,20 +81,8 @@ def _draw_wipe(axes: Any, second: int, wipe: Wipe) -> None:
 
 
 def _figure(size: tuple[float, float], rows: int) -> tuple[Any, Any]:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg  # slow to load
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=size, layout="constrained")
-    FigureCanvasAgg(figure)
-    panels = figure.subplots(rows, 1, squeeze=False, sharex=True, sharey=True)[:, 0]
-    for axes in panels:
+    figure, panels = figure_with(size, rows, squeeze=False, sharex=True, sharey=True)
+    for axes in panels[:, 0]:
         axes.grid(alpha=0.25)
         axes.spines[["top", "right"]].set_visible(False)
-    return figure, panels
-
-
-def _save(figure: Any, out_png: str | PathLike[str]) -> None:
-    try:
-        figure.savefig(out_png, dpi=110)
-    except OSError as error:
-        raise Failure(f"{out_png}: cannot be written: {error.strerror}") from error
+    return figure, panels[:, 0]

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hilplant.failure import Failure
+from hilplant.plots.picture import figure_with, save
 from hilplant.simulation.run import Result, simulate
 from hilplant.units import TURN_RAD
 
@@ -35,12 +35,7 @@ def plot_park_sequences(out_png: str | PathLike[str]) -> None:
     Failure
         When the picture cannot be written.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg  # slow to load
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(13, 11), layout="constrained")
-    FigureCanvasAgg(figure)
-    panels = figure.subplots(5, len(BENCHES), sharey="row", height_ratios=[1.7, 1.0, 1.0, 1.0, 1.2])
+    figure, panels = figure_with((13, 11), 5, len(BENCHES), sharey="row", height_ratios=[1.7, 1.0, 1.0, 1.0, 1.2])
     for column, (bench, title) in zip(panels.T, BENCHES.items(), strict=True):
         _draw_circuit(column, simulate(bench, SCENARIO), title)
     for axes, label in zip(
@@ -51,10 +46,7 @@ def plot_park_sequences(out_png: str | PathLike[str]) -> None:
         axes.set_ylabel(label)
     figure.align_ylabels(panels[:, 0])
     figure.suptitle("Slow at 0 s, fast at 2 s, off at 4 s; grey: the park contact is closed")
-    try:
-        figure.savefig(out_png, dpi=110)
-    except OSError as error:
-        raise Failure(f"{out_png}: cannot be written: {error.strerror}") from error
+    save(figure, out_png, 110)
 
 
 def _draw_circuit(column: NDArray[Any], result: Result, title: str) -> None:

@@ -9,6 +9,7 @@ from hilplant.failure import Failure
 from hilplant.mechanics.motion import Motion, motion
 from hilplant.mechanics.planar import Floats, Revolute
 from hilplant.mechanics.wiper import Side, Wiper
+from hilplant.plots.picture import figure_with, save
 from hilplant.units import RAD_PER_DEG, TURN_RAD
 
 #: Crank angles that are drawn when none are asked for [deg].
@@ -30,16 +31,11 @@ def plot_positions(
     Failure
         For another number of angles than four, or when the picture cannot be written.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg  # slow to load
-    from matplotlib.figure import Figure
-
     if len(crank_deg) != 4:
         raise Failure(f"four positions are drawn, not {len(crank_deg)}")
-    figure = Figure(figsize=(12, 8.6), layout="constrained")
-    FigureCanvasAgg(figure)
     turn = motion(wiper, np.linspace(0.0, TURN_RAD, _SWEEP_STEPS))
     moving = motion(wiper, np.array(crank_deg) * RAD_PER_DEG)
-    panels = figure.subplots(2, 2, sharex=True, sharey=True)
+    figure, panels = figure_with((12, 8.6), 2, 2, sharex=True, sharey=True)
     for index, axes in enumerate(panels.ravel()):
         _area(axes, wiper, turn)
         _wiper(axes, wiper, moving.coordinates[index])
@@ -52,10 +48,7 @@ def plot_positions(
     once = dict(zip(labels, lines, strict=True))  # all links but the crank look alike
     figure.legend(once.values(), once.keys(), loc="outside lower center", ncols=len(once), frameon=False)
     figure.suptitle(title)
-    try:
-        figure.savefig(out_png, dpi=110)
-    except OSError as error:
-        raise Failure(f"{out_png}: cannot be written: {error.strerror}") from error
+    save(figure, out_png, 110)
 
 
 def _wiper(axes: Any, wiper: Wiper, coordinates: Floats) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.failure import Failure
+from hilplant.plots.picture import figure_with, save
 from hilplant.recording.export import signal_columns
 from hilplant.recording.reader import read_recording
 from hilplant.units import SECOND_NS
@@ -25,18 +26,13 @@ def plot_recording(path: str | PathLike[str], out_png: str | PathLike[str]) -> N
     Failure
         When the file is not a recording, holds no ticks, or the picture cannot be written.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg  # slow to load
-    from matplotlib.figure import Figure
-
     recording = read_recording(path)
     columns, _ = signal_columns(recording)
     if not len(columns["time_s"]):
         raise Failure(f"{path}: holds no ticks to draw")
     stride = -(-len(columns["time_s"]) // _MOST_POINTS)
     columns = {name: values[::stride] for name, values in columns.items()}
-    figure = Figure(figsize=(10, 8.5), layout="constrained")
-    FigureCanvasAgg(figure)
-    panels = figure.subplots(5, 1, sharex=True, height_ratios=[1.0, 1.0, 1.0, 1.2, 0.8])
+    figure, panels = figure_with((10, 8.5), 5, sharex=True, height_ratios=[1.0, 1.0, 1.0, 1.2, 0.8])
     for draw, axes in zip((_voltage, _current, _speed, _arms, _switches), panels, strict=True):
         axes.grid(alpha=0.25)
         draw(axes, columns)
@@ -46,10 +42,7 @@ def plot_recording(path: str | PathLike[str], out_png: str | PathLike[str]) -> N
     panels[-1].set_xlim(0.0, max(columns["time_s"][-1], recording.run.step_ns / SECOND_NS))
     sparse = f", one tick in {stride}" if stride > 1 else ""
     figure.suptitle(f"{recording.run.name}: {columns['time_s'][-1]:.4g} s, recorded by hilplant{sparse}")
-    try:
-        figure.savefig(out_png, dpi=130)
-    except OSError as error:
-        raise Failure(f"{out_png}: cannot be written: {error.strerror}") from error
+    save(figure, out_png, 130)
 
 
 def _legend(axes: Any) -> None:

@@ -1,16 +1,14 @@
-"""The control study's tables on the terminal, and its figures as flat JSON."""
+"""The control study as tables, and its figures as flat JSON."""
 
 import re
 from typing import Any
-
-from rich.console import Console
-from rich.table import Table
 
 from hilplant.thesis.control_estimation import ESTIMATORS, Case
 from hilplant.thesis.control_search import Found
 from hilplant.thesis.control_study import OURS, Study
 from hilplant.thesis.control_test import Metrics
 from hilplant.thesis.control_thesis import ROWS, Row, factors, far_off
+from hilplant.thesis.text_table import Part, TextTable
 
 _TITLES = {
     "7-2": "Table 7-2: PID",
@@ -22,30 +20,25 @@ _STATES = [f"{n}" for n in range(1, 6)]
 _DUTY_COLUMNS = ("energy [Wh]", "i2 t [A2 h]", "motor turns", "wipes", "peak [A]", "need missed [%]")
 
 
-def print_study(study: Study, seconds: float) -> None:
-    """Print all tables; the source's numbers stand under ours."""
-    console = Console(width=132, highlight=False, markup=False)
-    for number, title in _TITLES.items():
-        console.print(_beside(study, number, title))
-    console.print(_ours(study))
-    for line in _remarks(study):
-        console.print(line)
-    console.print(_blind(study))
-    console.print(_cases(study.cases))
-    console.print(_duties(study))
-    console.print(f"{seconds:.1f} s")
+def report(study: Study, seconds: float) -> list[Part]:
+    """Return all tables; the source's numbers stand under ours. `seconds` is how long the study took."""
+    return [
+        *(_beside(study, number, title) for number, title in _TITLES.items()),
+        _metric_table(
+            "Ours: another PID, gains found by search, the cascade",
+            [[name, *_cells(study.results[name].row())] for name in OURS],
+        ),
+        *_remarks(study),
+        _metric_table("Without a speed sensor", [[name, *_cells(r.row())] for name, r in study.blind.items()]),
+        _cases(study.cases),
+        _duties(study),
+        f"{seconds:.1f} s",
+    ]
 
 
-def _table(title: str, first: str, columns: list[str]) -> Table:
-    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
-    table.add_column(first)
-    for column in columns:
-        table.add_column(column, justify="right")
-    return table
-
-
-def _metric_table(title: str) -> Table:
-    return _table(title, "rad/s, s", ["overshoot", "rise", *(f"state {n} -/+" for n in _STATES)])
+def _metric_table(title: str, rows: list[list[str]]) -> TextTable:
+    columns = ["rad/s, s", "overshoot", "rise", *(f"state {n} -/+" for n in _STATES)]
+    return TextTable(title, columns, rows, numbers=True)
 
 
 def _cells(numbers: tuple[float, ...]) -> list[str]:
@@ -53,20 +46,12 @@ def _cells(numbers: tuple[float, ...]) -> list[str]:
     return [f"{numbers[0]:.3f}", f"{numbers[1]:.3f}", *pairs]
 
 
-def _beside(study: Study, number: str, title: str) -> Table:
-    table = _metric_table(title)
+def _beside(study: Study, number: str, title: str) -> TextTable:
+    rows = []
     for row in ROWS:
         if row.table == number:
-            table.add_row(row.name, *_cells(study.results[row.name].row()))
-            table.add_row("  source", *_cells(row.numbers), style="dim")
-    return table
-
-
-def _ours(study: Study) -> Table:
-    table = _metric_table("Ours: another PID, gains found by search, the cascade")
-    for name in OURS:
-        table.add_row(name, *_cells(study.results[name].row()))
-    return table
+            rows += [[row.name, *_cells(study.results[row.name].row())], ["  source", *_cells(row.numbers)]]
+    return _metric_table(title, rows)
 
 
 def _remarks(study: Study) -> list[str]:
@@ -91,45 +76,34 @@ def compare_all(study: Study) -> tuple[int, list[tuple[str, str, float]]]:
     return compared, beyond
 
 
-def _blind(study: Study) -> Table:
-    table = _metric_table("Without a speed sensor")
-    for name, result in study.blind.items():
-        table.add_row(name, *_cells(result.row()))
-    return table
-
-
-def _cases(cases: list[Case]) -> Table:
+def _cases(cases: list[Case]) -> TextTable:
     columns = [
         f"{estimator}, {brush}" for estimator in ("network", "observer", "adapting") for brush in ("slow", "fast")
     ]
     title = (
         "Error of the estimated crank speed, rms (worst) in rad/s; the plant's parameter is off, the estimator's not"
     )
-    table = _table(title, "parameter", columns)
+    rows = []
     for slow, fast in zip(cases[::2], cases[1::2], strict=True):
         errors = [case.errors[estimator] for estimator in ESTIMATORS for case in (slow, fast)]
         name = slow.parameter if slow.factor == 1.0 else f"{slow.parameter} {100.0 * (slow.factor - 1.0):+.0f} %"
-        table.add_row(name, *(f"{e.rms_rad_s:.3f} ({e.worst_rad_s:.2f})" for e in errors))
-    return table
+        rows.append([name, *(f"{e.rms_rad_s:.3f} ({e.worst_rad_s:.2f})" for e in errors)])
+    return TextTable(title, ["parameter", *columns], rows, numbers=True)
 
 
-def _duties(study: Study) -> Table:
-    table = _table("An hour of mixed rain", "", list(_DUTY_COLUMNS))
-    for name, duty in study.duties.items():
-        cells = [f"{value:.1f}" for value in duty[:-1]]
-        table.add_row(name, *cells, f"{100.0 * duty.missed:.1f}")
-    return table
+def _duties(study: Study) -> TextTable:
+    rows = [
+        [name, *(f"{value:.1f}" for value in duty[:-1]), f"{100.0 * duty.missed:.1f}"]
+        for name, duty in study.duties.items()
+    ]
+    return TextTable("An hour of mixed rain", ["", *_DUTY_COLUMNS], rows, numbers=True)
 
 
-def print_found(found: list[Found]) -> None:
-    """Print what the search found, as the catalogue keeps it."""
-    console = Console(width=132, highlight=False, markup=False)
-    table = _metric_table("Gains found by search")
-    for one in found:
-        table.add_row(f"{one.rule}_{one.aim}", *_cells(one.metrics.row()))
-    console.print(table)
-    for one in found:
-        console.print(f'("{one.rule}", "{one.aim}"): {one.gains},')
+def found_report(found: list[Found]) -> list[Part]:
+    """Return what the search found, as the catalogue keeps it."""
+    rows = [[f"{one.rule}_{one.aim}", *_cells(one.metrics.row())] for one in found]
+    lines = [f'("{one.rule}", "{one.aim}"): {one.gains},' for one in found]
+    return [_metric_table("Gains found by search", rows), *lines]
 
 
 def figures(study: Study, seconds: float) -> dict[str, Any]:

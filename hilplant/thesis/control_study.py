@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from hilplant.atomic_write import make_folder
 from hilplant.bench import load_bench
 from hilplant.bench.assembly import Bench
 from hilplant.control.catalogue import ADAPTING, SEARCHED, controller_named, sensorless, with_stages
@@ -20,7 +21,7 @@ from hilplant.signals import INPUT_INDEX
 from hilplant.thesis.control_estimation import CHANGES, OFF, Case, estimated, estimator_table, full_range
 from hilplant.thesis.control_network import Floats, record, trained_paths
 from hilplant.thesis.control_rain import Duty, controlled_duty, rain, two_speed_duty
-from hilplant.thesis.control_test import Drive, Metrics, Run, metrics, run_drive, thesis_drive
+from hilplant.thesis.control_test import STATES, Drive, Metrics, Run, metrics, run_drive, thesis_drive
 from hilplant.thesis.control_thesis import ROWS, Order, controller_of, orders
 from hilplant.units import SECOND_NS
 
@@ -115,10 +116,7 @@ def draw(study: Study, bench: Bench, folder: Path) -> list[str]:
     """Draw all pictures into a folder and return their names."""
     from hilplant.plots import control as plots
 
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise Failure(f"{folder}: cannot be made ({error.strerror})") from error
+    make_folder(folder)
     groups = [("pid", "PID of Table 7-1, and by SIMC (compare Figure 7-3)", ["pid", "pid_imc"])]
     figures = {"hebb": ("7-6", "7-12"), "error_hebb": ("7-7", "7-13"), "quadratic": ("7-8", "7-14")}
     for rule, (fixed, fuzzy) in figures.items():
@@ -129,7 +127,8 @@ def draw(study: Study, bench: Bench, folder: Path) -> list[str]:
         names = [row.name for row in of_rule if row.fuzzy]
         groups.append((f"{rule}_fuzzy", f"Single neuron, {title} rule, fuzzy K (compare Figure {fuzzy})", names))
     groups.append(("cascade", "Cascade with load observer, and the best of the source's", ["cascade", ROWS[-2].name]))
-    plots.plot_all(folder, study.runs, groups)
+    dry = [(begin_s, end_s) for begin_s, end_s, _, wet in STATES if wet == 0.0]
+    plots.plot_all(folder, study.runs, dry, groups)
     plots.plot_fuzzy(folder / "fuzzy_sets.png")
     plots.plot_estimates(folder / "sensorless.png", *_estimates(bench, study.paths))
     plots.plot_stages(folder / "stages.png", study.stages)

@@ -5,7 +5,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import matplotlib
 import numpy as np
 
 from hilplant.bench import Bench, load_bench
@@ -17,23 +16,16 @@ from hilplant.perf.c_step import Rows, compile_networks
 from hilplant.perf.networks_cost import calm_minute
 from hilplant.perf.samples import alternate
 from hilplant.perf.step_cost import timed_s
+from hilplant.plots.surrogates import Mark, plot_surrogates
 from hilplant.signals import OUTPUT_INDEX, OUTPUTS
 from hilplant.simulation.bus_run import BusRun, drive
-from hilplant.train.report import folder_of
 from hilplant.units import SECOND_NS
-
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt
 
 #: The physical plant at steps this much shorter is the truth of the minute.
 FINER = 20
 #: A surrogate's current may be off by this part of its range, its stops by this angle.
 CURRENT_GOAL, ANGLE_GOAL_DEG = 0.03, 1.0
 _ROUNDS = 20
-#: Places of labels, in points from the mark, that would lie on each other otherwise.
-_LABELS = {"none": (-14, -18), "own polynomial": (8, -14), "torque network": (-70, 10), "all networks": (-20, -18)}
-#: Shape of the mark by what a name contains; a circle for the others.
-_MARKS = {"polynomial": "s", "network": "D"}
 _CURRENT = OUTPUT_INDEX["current_a"]
 
 
@@ -171,35 +163,21 @@ def lines(compared: list[Compared], seconds: float) -> list[str]:
 
 def plot(compared: list[Compared], path: Path) -> None:
     """Draw accuracy against cost."""
-    figure, axis = plt.subplots(figsize=(8, 5), layout="constrained")
-    for one in compared:
-        kind = next((word for word in _MARKS if word in one.name), "")
-        axis.plot(one.step_ns, one.current_rms_a, _MARKS.get(kind, "o"), markersize=8, label=one.name)
-        at, offset = (one.step_ns, one.current_rms_a), _LABELS.get(one.name, (8, 4))
-        axis.annotate(one.name, at, xytext=offset, textcoords="offset points")
-    goal = CURRENT_GOAL * compared[0].current_range_a
-    axis.axhline(goal, color="grey", linestyle="--", linewidth=1.0)
-    axis.annotate("3 % of the range", (0.98, goal), xycoords=("axes fraction", "data"), ha="right", va="bottom")
-    axis.set(yscale="log", xlabel="cost of a step [ns]", ylabel="RMS error of the current over a minute [A]")
-    axis.set_xlim(0.0, 1.2 * max(one.step_ns for one in compared))
-    axis.grid(visible=True, which="both", alpha=0.3)
-    axis.set_title("Lower left is better: circles are physics, squares polynomials, diamonds networks")
-    figure.savefig(path, dpi=120)
-    plt.close(figure)
+    marks = [Mark(one.name, one.step_ns, one.current_rms_a) for one in compared]
+    plot_surrogates(marks, CURRENT_GOAL * compared[0].current_range_a, path)
 
 
-def surrogates_study(seconds: float, out: Path | None) -> tuple[bool, dict[str, Any]]:
-    """Print the comparison, draw it into `out`, and say whether every model of a load or motor kept the goals."""
-    folder = None if out is None else folder_of(out)
-    compared = compare(seconds)
-    print("\n".join(lines(compared, seconds)))
-    if folder is not None:
-        plot(compared, folder / "surrogates.png")
-        print(f"{folder / 'surrogates.png'} written")
-    figures: dict[str, Any] = {"bus_s": seconds}
+def all_kept(compared: list[Compared]) -> bool:
+    """Say whether every model of a load or motor kept the goals."""
+    return all(one.kept for one in compared if one.name != "none")
+
+
+def figures(compared: list[Compared], seconds: float) -> dict[str, Any]:
+    """Return the comparison as flat figures; `seconds` is how long each drove the bus."""
+    flat: dict[str, Any] = {"bus_s": seconds}
     for one in compared:
         key = one.name.replace(" ", "_")
-        figures |= {
+        flat |= {
             f"{key}_step_ns": one.step_ns,
             f"{key}_step_ratio_to_c": one.step_ns / one.c_step_ns,
             f"{key}_current_rms_a": one.current_rms_a,
@@ -208,4 +186,4 @@ def surrogates_study(seconds: float, out: Path | None) -> tuple[bool, dict[str, 
             f"{key}_bus_current_share": one.bus_current_share,
             f"{key}_kept": one.kept,
         }
-    return all(one.kept for one in compared if one.name != "none"), figures
+    return flat

@@ -9,9 +9,9 @@ from hilplant.models.records import Arm, Brush, Load, Parameters, ParkSwitch
 from hilplant.models.tables import channels
 from hilplant.motor_bench.no_load_fit import Miss, misses_of, read_motor, read_no_load, steady_state
 from hilplant.signals import OUTPUT_INDEX
+from hilplant.simulation.five_wipes import Wipe, five_wipes, shape_difference
 from hilplant.simulation.run import simulate
 from hilplant.thesis.solver import Rows, run_step
-from hilplant.thesis.whole_system import Wipe, five_wipes, shape_difference
 
 #: Of a motor fitted to Table 5-4, the largest miss of a current or a speed that is accepted.
 FITTED_WITHIN = 0.04

@@ -58,7 +58,7 @@ class Minimum:
 
 
 def minimise(
-    fitted: Fitted, start: Floats, settings: Settings, progress: Callable[[int, float], None] | None = None
+    fitted: Fitted, start: Floats, settings: Settings, on_epoch: Callable[[int, float], None] | None = None
 ) -> Minimum:
     """Return the best weights on the way down from `start`, by the data kept back.
 
@@ -66,7 +66,7 @@ def minimise(
     ----------
     fitted, start, settings
         What to fit, from which weights, and when to stop.
-    progress
+    on_epoch
         Called after each epoch with its number and the judged error. A KeyboardInterrupt, there or elsewhere, ends the
         fit with the best weights so far.
 
@@ -78,8 +78,8 @@ def minimise(
             judged = fitted.judged(weights)
             if judged < best.judged:
                 best = Minimum(weights, judged, epoch)
-            if progress is not None:
-                progress(epoch, judged)
+            if on_epoch is not None:
+                on_epoch(epoch, judged)
             if epoch - best.epochs >= settings.patience:
                 break
     except KeyboardInterrupt:

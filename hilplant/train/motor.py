@@ -10,9 +10,10 @@ from hilplant import __version__
 from hilplant.bench import Bench
 from hilplant.bench.motor_network_file import FORMAT, QUANTITIES, PathSection
 from hilplant.bench.parameter_hash import motor_hash
+from hilplant.progress import OnProgress
 from hilplant.train.motor_data import LENGTH_S, Floats, recorded
 from hilplant.train.motor_figures import path_figures
-from hilplant.train.motor_fit import Progress, Trained, train_path
+from hilplant.train.motor_fit import Trained, train_path
 from hilplant.train.motor_search import Found, search
 from hilplant.train.torque import one_thread
 from hilplant.train.writing import data_hash, write_file
@@ -36,7 +37,7 @@ class MotorNetwork:
         return any(path.interrupted for path in self.paths)
 
 
-def train_motor(bench: Bench, seed: int, command: str, progress: Progress) -> MotorNetwork:
+def train_motor(bench: Bench, seed: int, command: str, on_progress: OnProgress) -> MotorNetwork:
     """Train both paths for the motor of a bench; the same seed gives the same numbers.
 
     Ctrl-C ends the stage of training that runs, and each that follows, with the best weights so far.
@@ -45,7 +46,7 @@ def train_motor(bench: Bench, seed: int, command: str, progress: Progress) -> Mo
     for place, brush in enumerate(("slow", "fast")):
         sequence = recorded(bench, brush, LENGTH_S, np.random.default_rng([seed, place, 0]))
         with one_thread():
-            paths.append(train_path(brush, sequence, np.random.default_rng([seed, place, 1]), progress))
+            paths.append(train_path(brush, sequence, np.random.default_rng([seed, place, 1]), on_progress))
     sections = {path.brush: _section(path) for path in paths}
     rows = [PathSection.model_validate(section).row() for section in sections.values()]
     networks = np.concatenate([[0.0], *rows])

@@ -1,11 +1,11 @@
 """Training of one path of the motor network: open loop first, then closed loop from there, section 6.4.3."""
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from hilplant.progress import OnProgress, ProgressReport
 from hilplant.train.levenberg_marquardt import Settings, minimise
 from hilplant.train.motor_data import Flags, Floats, Sequence
 from hilplant.train.motor_loop import WIDTH, room_for, run, weight_count
@@ -25,8 +25,6 @@ CLOSED = (
     (20, Settings(epochs=15, patience=8, decay=0.0, first_damping=1e-3)),
     (ENDLESS, Settings(epochs=60, patience=15, decay=0.0, first_damping=1e-3)),
 )
-
-Progress = Callable[[str, int, float], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +137,7 @@ def first_weights(neurons: int, random: np.random.Generator) -> Floats:
     return weights
 
 
-def train_path(brush: str, sequence: Sequence, random: np.random.Generator, progress: Progress) -> Trained:
+def train_path(brush: str, sequence: Sequence, random: np.random.Generator, on_progress: OnProgress) -> Trained:
     """Train a path; Ctrl-C ends it with the best weights so far."""
     scaling = Scaling.of(sequence)
     weights = first_weights(NEURONS[brush], random)
@@ -148,7 +146,7 @@ def train_path(brush: str, sequence: Sequence, random: np.random.Generator, prog
     for place, (horizon, settings) in enumerate(stages):
         noise = NOISE * random.standard_normal(sequence.outputs.shape) if place == 0 else None
         stage = _Stage(Fit(sequence, scaling, horizon, noise), settings, f"{brush}, {_named(horizon)}")
-        weights, stopped = stage.run(weights, progress)
+        weights, stopped = stage.run(weights, on_progress)
         epochs[min(place, 1)] += stage.epochs
         seconds[min(place, 1)] += stage.seconds
         if place == 0:
@@ -173,13 +171,14 @@ class _Stage:
     epochs: int = 0
     seconds: float = 0.0
 
-    def run(self, start: Floats, progress: Progress) -> tuple[Floats, bool]:
+    def run(self, start: Floats, on_progress: OnProgress) -> tuple[Floats, bool]:
         """Return the best weights, and whether Ctrl-C came."""
         begin = time.perf_counter()
 
         def told(epoch: int, judged: float) -> None:
             self.epochs = epoch
-            progress(self.name, epoch, judged)
+            note = f"epoch {epoch}, validation {judged:.2g}"
+            on_progress(ProgressReport(self.name, epoch, self.settings.epochs, note))
 
         minimum = minimise(self.fit, start, self.settings, told)
         self.seconds = time.perf_counter() - begin

@@ -1,6 +1,6 @@
 """Training of the torque network of section 6.4.2: several starts, the best by data that no fit has seen."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from hilplant.bench.assembly import Bench
+from hilplant.progress import OnProgress, ProgressReport, unseen
 from hilplant.train.levenberg_marquardt import Minimum, Settings, minimise
 from hilplant.train.tanh_network import NetworkFit, Samples, TanhNetwork
 from hilplant.train.torque_data import Speeds, Wipes, wipes
@@ -95,9 +96,6 @@ class Trained:
         return self.scale.torques_of(self.network.answer(self.weights, self.scale.inputs(states, self.plan.harmonics)))
 
 
-Progress = Callable[[int, int, float], None]
-
-
 def data_of(bench: Bench, plan: Plan) -> Data:
     """Return all samples of a bench."""
     speeds = plan.speeds
@@ -105,15 +103,15 @@ def data_of(bench: Bench, plan: Plan) -> Data:
     return Data(*(wipes(bench, kind, plan.points) for kind in kinds))
 
 
-def train(data: Data, plan: Plan, progress: Progress | None = None) -> Trained:
+def train(data: Data, plan: Plan, on_progress: OnProgress = unseen) -> Trained:
     """Return the best of several trainings; an interrupt keeps the best so far.
 
-    `progress` is called after each epoch with the number of the start, the epoch and the judged error.
+    `on_progress` is told of each epoch; starts are counted.
     """
     best: Trained | None = None
     with one_thread():
         for start in range(plan.starts):
-            trained = train_once(data, plan, start, progress)
+            trained = train_once(data, plan, start, on_progress)
             if best is None or trained.judged < best.judged:
                 best = trained
             if trained.interrupted:
@@ -130,7 +128,7 @@ def one_thread() -> Iterator[None]:
         yield
 
 
-def train_once(data: Data, plan: Plan, start: int, progress: Progress | None = None) -> Trained:
+def train_once(data: Data, plan: Plan, start: int, on_progress: OnProgress = unseen) -> Trained:
     """Return one training; its split and its first weights come from the plan's seed and the start's number."""
     random = np.random.default_rng([plan.seed, plan.neurons, start])
     torques = data.training.torques
@@ -143,8 +141,12 @@ def train_once(data: Data, plan: Plan, start: int, progress: Progress | None = N
     both = Samples(np.concatenate([kept.inputs, judging.inputs]), np.concatenate([kept.targets, judging.targets]))
     network = TanhNetwork(samples.inputs.shape[1], plan.neurons, torques.shape[1])
     fit = NetworkFit(network, samples.taken(sets[0]), both)
-    report = None if progress is None else lambda epoch, judged: progress(start, epoch, judged)
-    minimum = minimise(fit, network.start(random), plan.settings, report)
+
+    def tell(epoch: int, judged: float) -> None:
+        note = f"epoch {epoch}, judged {judged:.2g}"
+        on_progress(ProgressReport("torque network, starts", start, plan.starts, note))
+
+    minimum = minimise(fit, network.start(random), plan.settings, tell)
     return _with_errors(data, plan, minimum, (network, scale, sets))
 
 

@@ -1,6 +1,5 @@
 """Random scenarios against the physical plant: how far the network is off where it is in charge, and what follows."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +9,7 @@ from hilplant.bench.assembly import Bench
 from hilplant.models import torque_samples as samples
 from hilplant.models.load import LOADS
 from hilplant.models.records import MODEL_AT, State
+from hilplant.progress import OnProgress, ProgressReport, unseen
 from hilplant.signals import IN_CHARGE, INPUT_INDEX
 from hilplant.simulation.batch import simulate_batch
 from hilplant.train.random_scenarios import random_inputs, random_state
@@ -72,9 +72,7 @@ class Range:
     seed: int
 
 
-def search(
-    bench: Bench, bounds: tuple[float, float], extent: Range, progress: Callable[[int], None] | None = None
-) -> Found:
+def search(bench: Bench, bounds: tuple[float, float], extent: Range, on_progress: OnProgress = unseen) -> Found:
     """Run random scenarios with the network and with the physical load alone, and compare.
 
     Parameters
@@ -85,8 +83,8 @@ def search(
         What the network's file promises [N m], dry and wet.
     extent
         How much is searched.
-    progress
-        Called with the number of scenarios done. A KeyboardInterrupt ends the search with what was found.
+    on_progress
+        Told of the scenarios done. A KeyboardInterrupt ends the search with what was found.
 
     """
     found = Found()
@@ -98,8 +96,7 @@ def search(
             ours, theirs = (_run(bench, inputs, seeds, load) for load in ("network", "reduced"))
             _compare_torques(found, bench, bounds, (ours, inputs[:, :, INPUT_INDEX["screen"]], first))
             _compare_motions(found, ours, theirs)
-            if progress is not None:
-                progress(found.scenarios)
+            on_progress(ProgressReport("random scenarios", found.scenarios, extent.scenarios))
     except KeyboardInterrupt:
         pass
     return found

@@ -1,11 +1,12 @@
 """The study of Table 6-1 and Figure 6-7: networks of 1 to 20 neurons, the mean of three trainings each."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
+from hilplant.progress import OnProgress, ProgressReport, unseen
 from hilplant.train.torque import Data, Plan, one_thread, train_once
 
 #: Trainings of each size.
@@ -27,26 +28,23 @@ class Studied:
     seconds: float
 
 
-def study(
-    data: Data, plan: Plan, sizes: Sequence[int], progress: Callable[[int, int], None] | None = None
-) -> Iterator[Studied]:
+def study(data: Data, plan: Plan, sizes: Sequence[int], on_progress: OnProgress = unseen) -> Iterator[Studied]:
     """Yield the figures of each size, with the inputs of `plan`; an interrupt ends the study.
 
-    `progress` is called with the neurons and the number of the training before each.
+    `on_progress` is told before each training.
     """
     with one_thread():
         for neurons in sizes:
-            found = _size(data, replace(plan, neurons=neurons), progress)
+            found = _size(data, replace(plan, neurons=neurons), on_progress)
             if found is None:
                 return
             yield found
 
 
-def _size(data: Data, plan: Plan, progress: Callable[[int, int], None] | None) -> Studied | None:
+def _size(data: Data, plan: Plan, on_progress: OnProgress) -> Studied | None:
     begin, errors = time.perf_counter(), []
     for number in range(TRAININGS):
-        if progress is not None:
-            progress(plan.neurons, number)
+        on_progress(ProgressReport(f"{plan.neurons} neurons, harmonics {plan.harmonics}, trainings", number, TRAININGS))
         trained = train_once(data, plan, number)
         if trained.interrupted:
             return None

@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 from hilplant.bench import load_bench
 from hilplant.bench.motor_network_file import QUANTITIES
 from hilplant.models.narx import FAST_BRUSH, SLOW_BRUSH, Sample, path_of, predict
+from hilplant.progress import ProgressReport
 from hilplant.resources import shipped
 from hilplant.train.motor_data import excitation, mean_torque, physical, recorded
 from hilplant.train.motor_fit import ENDLESS, Fit, Scaling, first_weights, train_path
@@ -140,9 +141,9 @@ def test_a_short_training_repeats_to_the_last_bit_and_an_interrupt_keeps_the_bes
     sequence = recorded(bench, "fast", 1.5, np.random.default_rng(2))
     told: list[float] = []
 
-    def stop_in_the_sixth_epoch(_stage: str, epoch: int, judged: float) -> None:
-        told.append(judged)
-        if epoch == 6:
+    def stop_in_the_sixth_epoch(seen: ProgressReport) -> None:
+        told.append(float(seen.note.split()[-1]))
+        if seen.done == 6:
             raise KeyboardInterrupt
 
     with one_thread():

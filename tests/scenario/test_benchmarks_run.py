@@ -1,6 +1,6 @@
 """The benchmarks that need no privileges run from end to end and write every figure that is promised."""
 
-from hilplant.perf.perf import measure_and_print
+from hilplant.cli.actions.perf import measure_and_print
 
 
 def test_step_simulation_batch_and_tick_are_measured_beside_their_limits() -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hilplant.bus.transport import TransportError
-from hilplant.daemon import run_daemon
+from hilplant.cli.actions.run import run_daemon
 
 
 def test_an_interface_that_cannot_be_opened_leaves_no_recording_in_the_way(tmp_path: Path) -> None:

@@ -12,12 +12,13 @@ from typer.testing import CliRunner
 
 from hilplant.bench import load_bench
 from hilplant.bench.assembly import Bench
+from hilplant.cli.actions import study_control
 from hilplant.cli.main import app
 from hilplant.control.catalogue import controller_named, searched_neuron
 from hilplant.control.records import Controller
 from hilplant.failure import Failure
 from hilplant.signals import OUTPUT_INDEX
-from hilplant.thesis import control_command, control_rain
+from hilplant.thesis import control_rain
 from hilplant.thesis.control_estimation import ESTIMATORS, Case, network_speeds
 from hilplant.thesis.control_network import train, training_record
 from hilplant.thesis.control_rain import LEAST_PER_MINUTE, MOST_PER_MINUTE, rain, two_speed_duty
@@ -202,8 +203,8 @@ def test_orders_are_compared_by_pairs():
 
 
 def test_the_command_prints_its_tables_draws_its_pictures_and_writes_its_figures(study, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(control_command, "run_study", lambda _: study)
-    figures = control_command.control_study("default", tmp_path / "pictures", search=False)
+    monkeypatch.setattr(study_control, "run_study", lambda _: study)
+    figures = study_control.control_figures("default", tmp_path / "pictures", search=False)
     told = capsys.readouterr().out
     assert {path.stem for path in (tmp_path / "pictures").glob("*.png")} == PICTURES
     assert figures["compared"] - figures["within_factor_3"] == 1

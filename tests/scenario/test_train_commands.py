@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 
 from hilplant.bench import check_bench, load_bench
 from hilplant.cli.main import app
+from hilplant.progress import ProgressReport
 from hilplant.train import torque
 from hilplant.train.levenberg_marquardt import Settings
 from hilplant.train.torque import Plan, data_of, train
@@ -59,7 +60,7 @@ def test_polynomial_and_tables_write_their_files(tmp_path: Path) -> None:
         (("torque", "default", "--speeds", "0,1"), "two rising speeds above 0"),
         (("torque", "polynomial", *SMALL), "must be reduced or network, not polynomial"),
         (("torque", "no_such_bench"), "no_such_bench: no such file"),
-        (("tables", "default", "--out", "/dev/null/x"), "/dev/null/x: cannot be made"),
+        (("tables", "default", "--out", "/dev/null/x"), "/dev/null/x: cannot be written"),
     ],
 )
 def test_wrong_use_is_told_in_one_line(arguments: tuple[str, ...], text: str, tmp_path: Path) -> None:
@@ -73,8 +74,8 @@ def test_an_interrupt_keeps_the_best_start_so_far() -> None:
     data = data_of(load_bench("default"), plan)
     whole = [torque.train_once(data, plan, start) for start in range(2)]
 
-    def interrupting(start: int, epoch: int, judged: float) -> None:
-        if (start, epoch) == (2, 2):
+    def interrupting(seen: ProgressReport) -> None:
+        if seen.done == 2 and seen.note.startswith("epoch 2,"):
             raise KeyboardInterrupt
 
     kept = train(data, plan, interrupting)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from hilplant import doctor
+from hilplant.cli.actions.doctor import print_findings
 from hilplant.doctor import can_bus, real_time
 from hilplant.doctor.finding import Finding
 
@@ -76,7 +77,7 @@ def test_a_machine_without_linux_files_and_calls_is_examined_without_an_exceptio
     monkeypatch.delattr("socket.AF_CAN")
     monkeypatch.setenv("PATH", "")
     findings = doctor.examine(tmp_path)
-    doctor.print_findings(findings)
+    print_findings(findings)
     assert "SocketCAN" in capsys.readouterr().out
 
 
@@ -88,7 +89,7 @@ def test_in_a_terminal_findings_break_between_words_and_commands_not_at_all(
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("NO_COLOR", "1")
     what, command = "several words " * 12, "sudo " + "x" * 90
-    doctor.print_findings([doctor.Finding("name", "warn", what.strip(), command)])
+    print_findings([doctor.Finding("name", "warn", what.strip(), command)])
     *lines, last = capsys.readouterr().out.splitlines()
     assert len(lines) == 4
     assert all(len(line) <= 60 and line.endswith(("several", "words")) for line in lines)

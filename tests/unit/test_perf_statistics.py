@@ -2,13 +2,13 @@
 
 import pytest
 
+from hilplant.cli.actions.perf import amount, goal_text, print_table
 from hilplant.failure import Failure
 from hilplant.perf.cyclictest import latencies
 from hilplant.perf.machine import cpu_model
 from hilplant.perf.perf import PARTS, chosen_parts
 from hilplant.perf.results import Goal, Measured, Row
 from hilplant.perf.samples import alternate, histogram_quantile, middle, quantile
-from hilplant.perf.table import amount, goal_text, print_table
 
 #: As `cyclictest -q -h 20` prints it: 4 samples within the histogram, 1 beyond it.
 REPORT = """\

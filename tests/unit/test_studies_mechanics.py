@@ -15,9 +15,9 @@ from hilplant.models.tables import GRAVITY, POINTS
 from hilplant.plots.mechanics import plot_conditions, plot_torque
 from hilplant.resources import shipped
 from hilplant.simulation.crank_torque import WETNESS, Conditions, crank_torque
-from hilplant.thesis.mechanics_command import solver_study
+from hilplant.simulation.five_wipes import five_wipes, shape_difference
+from hilplant.thesis.mechanics_studies import solver_study
 from hilplant.thesis.thesis_checks import Check, thesis_checks
-from hilplant.thesis.whole_system import five_wipes, shape_difference
 from hilplant.thesis.wiping import INDEPENDENT, demands, wiping
 from hilplant.units import TURN_RAD
 
@@ -132,9 +132,9 @@ def test_a_load_without_friction_has_no_shape_to_compare() -> None:
 
 def test_the_step_is_judged_apart_from_the_park_circuit() -> None:
     """A bench whose park circuit would run on to park when switched off is within the bound as well."""
-    figures, within = solver_study("mechanical")
-    assert within
-    assert figures["park_angle_rms_percent"] < 0.05
+    found = solver_study("mechanical")
+    assert found.holds
+    assert found.figures["park_angle_rms_percent"] < 0.05
 
 
 @pytest.mark.parametrize("draw", [plot_torque, plot_conditions])

@@ -23,6 +23,6 @@ def control(
     It commands the supply voltage and both relays, and ticks with the plant's speed message. With _sensorless behind
     its name, as in pid_sensorless, a controller uses voltage, current and park switch only.
     """
-    from hilplant.ecu.velocity_command import control_command
+    from hilplant.cli.actions.control import control_command
 
-    raise typer.Exit(control_command(bench, controller, reference, seconds, channel))
+    control_command(bench, controller, reference, seconds, channel)

@@ -19,6 +19,6 @@ def demo(
 
     Needs no CAN in the kernel and no privileges; leaves a recording and a plot.
     """
-    from hilplant.demo import run_demo
+    from hilplant.cli.actions.demo import run_demo
 
-    raise typer.Exit(run_demo(seconds, out))
+    run_demo(seconds, out)

@@ -17,7 +17,8 @@ def doctor(json_file: JsonFile = None) -> None:
 
     With the command that mends it.
     """
-    from hilplant.doctor import examine, print_findings
+    from hilplant.cli.actions.doctor import print_findings
+    from hilplant.doctor import examine
 
     findings = examine()
     print_findings(findings)

@@ -28,6 +28,6 @@ def ecu(
 
         typer.echo(chart_text())
         raise typer.Exit()
-    from hilplant.ecu.command import ecu_command
+    from hilplant.cli.actions.ecu import ecu_command
 
-    raise typer.Exit(ecu_command(bench, seconds, stalk, channel))
+    ecu_command(bench, seconds, stalk, channel)

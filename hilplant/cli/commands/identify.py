@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import (
     DEFAULT,
@@ -14,8 +15,6 @@ from hilplant.cli.options import (
     DataNames,
     Frames,
     JsonFile,
-    claim,
-    claim_beside,
     write_json,
 )
 
@@ -50,13 +49,14 @@ def identify(  # noqa: PLR0913, PLR0917 a command has as many options as it has
     Of a real wiper, with intervals. Three stages: transfer function, global search, least squares. What the data
     cannot tell is named.
     """
-    from hilplant.identify.identify_command import Request, identify_files
+    from hilplant.cli.actions.identify import run_identification
+    from hilplant.identify.from_files import Request
 
     for path in (out, report):
-        claim_beside(path)
+        claim(path)
     claim(json_file)
     request = Request(
-        tuple(data), bench, out, report, tuple(held_out or ()), tuple(hold or ()), tuple(also or ()), columns, frames,
+        tuple(data), bench, out, tuple(held_out or ()), tuple(hold or ()), tuple(also or ()), columns, frames,
         optimiser, generations, population, inequalities, seed, resume, dask, date or datetime.date.today().isoformat(),
     )  # fmt: skip
-    write_json(json_file, identify_files(request))
+    write_json(json_file, run_identification(request, report))

@@ -5,10 +5,10 @@ from typing import Annotated
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import (
     JsonFile,
-    claim,
     write_json,
 )
 
@@ -31,9 +31,9 @@ def inspect(  # noqa: PLR0913, PLR0917
 
     Exit code 0 when it will do for identification, else 1.
     """
-    from hilplant.identify.command import Wish, inspect_data
+    from hilplant.cli.actions.inspect import Inspection, inspect_data
 
     claim(json_file)
-    good, figures = inspect_data(Wish(data, columns, frames, mode, gear_ratio))
+    good, figures = inspect_data(Inspection(data, columns, frames, mode, gear_ratio))
     write_json(json_file, figures)
     raise typer.Exit(0 if good else 1)

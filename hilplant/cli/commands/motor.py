@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import JsonFile, claim, claim_beside, write_json
+from hilplant.cli.options import JsonFile, write_json
 
 app = command_app()
 
@@ -21,8 +22,13 @@ def motor(
 
     With the standard error of each parameter; docs/identification.md says what the file of readings holds.
     """
-    from hilplant.motor_bench.motor_command import motor_from_readings
+    from hilplant.motor_bench.motor_file import motor_from_readings
 
-    claim_beside(out)
+    claim(out)
     claim(json_file)
-    write_json(json_file, motor_from_readings(readings, out))
+    found = motor_from_readings(readings, out)
+    for name, value in found.values.items():
+        error = ", given" if name in found.given else f" +- {value.s:.2g}" if value.s else ", without an error"
+        typer.echo(f"  {name:22} {value.n:.6g}{error}")
+    typer.echo(f"{out} written; put it under `motor` of a bench")
+    write_json(json_file, found.figures)

@@ -4,8 +4,9 @@ from typing import Annotated
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import JsonFile, claim, write_json
+from hilplant.cli.options import JsonFile, write_json
 
 app = command_app()
 
@@ -19,7 +20,7 @@ def perf(
 
     Each figure stands beside its limit, measured in the same run.
     """
-    from hilplant.perf.perf import measure_and_print
+    from hilplant.cli.actions.perf import measure_and_print
 
     claim(json_file)
     write_json(json_file, measure_and_print(only))

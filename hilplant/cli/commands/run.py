@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import (
     DEFAULT,
@@ -13,7 +14,6 @@ from hilplant.cli.options import (
     Channel,
     JsonFile,
     Seconds,
-    claim,
     flat,
     write_json,
 )
@@ -39,7 +39,7 @@ def run(  # noqa: PLR0913, PLR0917
     Ends when the time is up, or on SIGTERM or Ctrl-C. With --controller, relays and supply are commanded inside the
     loop in every tick, and not by frames; docs/control.md tells the names.
     """
-    from hilplant.daemon import Inside, run_daemon
+    from hilplant.cli.actions.run import Inside, run_daemon
 
     if reference is not None and controller is None:
         raise Failure("--reference is what a controller is asked for: give --controller NAME with it")

@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import (
     DEFAULT,
@@ -12,7 +13,6 @@ from hilplant.cli.options import (
     DataNames,
     Frames,
     JsonFile,
-    claim,
     write_json,
 )
 
@@ -33,7 +33,7 @@ def validate(  # noqa: PLR0913, PLR0917
 
     Errors of current and park edges. Exit code 1 when one is above a bound that was given.
     """
-    from hilplant.identify.validate_command import validate_files
+    from hilplant.cli.actions.validate import validate_files
 
     claim(json_file)
     good, figures = validate_files(data, bench, (columns, frames), (rms_current_a, rms_edge_ms))

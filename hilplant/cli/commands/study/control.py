@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import DEFAULT, BenchName, JsonFile, claim, write_json
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, write_json
 
 app = command_app()
 
@@ -25,7 +26,7 @@ def control(
 
     With the speed sensor and without it, and through an hour of rain.
     """
-    from hilplant.thesis.control_command import control_study
+    from hilplant.cli.actions.study_control import control_figures
 
     claim(json_file)
-    write_json(json_file, control_study(bench, out, search))
+    write_json(json_file, control_figures(bench, out, search))

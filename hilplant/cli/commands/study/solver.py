@@ -2,8 +2,9 @@
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import DEFAULT, BenchName, JsonFile, claim, write_json
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, write_json
 
 app = command_app()
 
@@ -17,9 +18,11 @@ def solver(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
 
     Start, wet and dry, brown-out, stall, reverse, park, wind. Exit code 1 when an error is above 0.5 % of range.
     """
-    from hilplant.thesis.mechanics_command import solver_study
+    from hilplant.cli.report import print_report
+    from hilplant.thesis.mechanics_studies import solver_study
 
     claim(json_file)
-    figures, within = solver_study(bench)
-    write_json(json_file, figures)
-    raise typer.Exit(0 if within else 1)
+    study = solver_study(bench)
+    print_report(study.parts)
+    write_json(json_file, study.figures)
+    raise typer.Exit(0 if study.holds else 1)

@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import JsonFile, claim, write_json
+from hilplant.cli.options import JsonFile, write_json
 
 app = command_app()
 
@@ -24,9 +25,15 @@ def surrogates(
 
     Exit code 1 when to the ECU one is not as good as the physics that it stands for.
     """
-    from hilplant.thesis.surrogate_study import surrogates_study
+    from hilplant.atomic_write import make_folder
+    from hilplant.thesis.surrogate_study import all_kept, compare, figures, lines, plot
 
     claim(json_file)
-    kept, figures = surrogates_study(seconds, out)
-    write_json(json_file, figures)
-    raise typer.Exit(0 if kept else 1)
+    picture = None if out is None else make_folder(out) / "surrogates.png"
+    compared = compare(seconds)
+    typer.echo("\n".join(lines(compared, seconds)))
+    if picture is not None:
+        plot(compared, picture)
+        typer.echo(f"{picture} written")
+    write_json(json_file, figures(compared, seconds))
+    raise typer.Exit(0 if all_kept(compared) else 1)

@@ -2,8 +2,9 @@
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import DEFAULT, BenchName, JsonFile, claim, write_json
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, write_json
 
 app = command_app()
 
@@ -17,9 +18,11 @@ def thesis(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
 
     Exit code 1 when one does not hold.
     """
-    from hilplant.thesis.mechanics_command import thesis_study
+    from hilplant.cli.report import print_report
+    from hilplant.thesis.mechanics_studies import thesis_study
 
     claim(json_file)
-    figures, holds = thesis_study(bench)
-    write_json(json_file, figures)
-    raise typer.Exit(0 if holds else 1)
+    study = thesis_study(bench)
+    print_report(study.parts)
+    write_json(json_file, study.figures)
+    raise typer.Exit(0 if study.holds else 1)

@@ -4,8 +4,9 @@ from typing import Annotated
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import DEFAULT, BenchName, JsonFile, claim, write_json
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, write_json
 
 app = command_app()
 

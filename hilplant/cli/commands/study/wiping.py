@@ -1,7 +1,8 @@
 """`hilplant study wiping`."""
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import DEFAULT, BenchName, JsonFile, claim, write_json
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, write_json
 
 app = command_app()
 
@@ -15,7 +16,10 @@ def wiping(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
 
     With the three figures of FMVSS 104 beside them.
     """
-    from hilplant.thesis.mechanics_command import wiping_study
+    from hilplant.cli.report import print_report
+    from hilplant.thesis.mechanics_studies import wiping_study
 
     claim(json_file)
-    write_json(json_file, wiping_study(bench))
+    study = wiping_study(bench)
+    print_report(study.parts)
+    write_json(json_file, study.figures)

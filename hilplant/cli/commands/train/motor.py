@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out, Seed, claim, write_json
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out, Seed
 
 app = command_app()
 
@@ -24,9 +25,8 @@ def motor(
     Open loop first, then closed loop, a path for each brush. Ctrl-C keeps the best so far. Exit code 1 when a scenario
     finds it beyond the bounds that its file states.
     """
-    from hilplant.train.motor_command import run_train_motor
+    from hilplant.cli.actions.train import run_training
+    from hilplant.reports.motor import report_motor
 
     claim(json_file)
-    kept, figures = run_train_motor(bench, seed, scenarios, out)
-    write_json(json_file, figures)
-    raise typer.Exit(0 if kept else 1)
+    run_training(lambda on_progress: report_motor(bench, seed, scenarios, out, on_progress), json_file)

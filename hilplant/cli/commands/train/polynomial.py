@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out, claim, write_json
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out
 
 app = command_app()
 
@@ -18,7 +19,8 @@ def polynomial(
 
     Two polynomials and two constants, by the costs (6.4) and (6.5).
     """
-    from hilplant.train.command import train_polynomial as run
+    from hilplant.cli.actions.train import run_training
+    from hilplant.reports.polynomial import train_polynomial
 
     claim(json_file)
-    write_json(json_file, run(bench, out))
+    run_training(lambda _: train_polynomial(bench, out), json_file)

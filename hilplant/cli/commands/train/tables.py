@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out, claim, write_json
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out
 
 app = command_app()
 
@@ -22,7 +23,8 @@ def tables(
 
     With as few knots as keep all of them within a bound.
     """
-    from hilplant.train.command import train_tables as run
+    from hilplant.cli.actions.train import run_training
+    from hilplant.reports.kinematic_tables import train_tables
 
     claim(json_file)
-    write_json(json_file, run(bench, bound, out))
+    run_training(lambda _: train_tables(bench, bound, out), json_file)

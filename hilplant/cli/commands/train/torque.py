@@ -6,8 +6,9 @@ from typing import Annotated
 
 import typer
 
+from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out, Seed, claim, write_json
+from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out, Seed
 from hilplant.failure import Failure
 
 #: No wiper's crank turns faster: two hundred wipes a minute.
@@ -35,16 +36,16 @@ def torque(  # noqa: PLR0913, PLR0917
 
     Ctrl-C keeps the best so far. Exit code 1 when a random run finds it beyond the bound that its file states.
     """
-    from hilplant.train.command import Wish, study_torque, train_torque
+    from hilplant.cli.actions.train import run_training
+    from hilplant.reports.torque import TorqueOptions, train_torque
+    from hilplant.reports.torque_sizes import study_torque
 
     claim(json_file)
-    wish = Wish(neurons, harmonics, starts, _speeds(speeds), seed, scenarios, out)
+    options = TorqueOptions(neurons, harmonics, starts, _speeds(speeds), seed, scenarios, out)
     if study:
-        write_json(json_file, study_torque(bench, wish, 20))
-        return
-    kept, figures = train_torque(bench, wish)
-    write_json(json_file, figures)
-    raise typer.Exit(0 if kept else 1)
+        run_training(lambda on_progress: study_torque(bench, options, 20, on_progress), json_file)
+    else:
+        run_training(lambda on_progress: train_torque(bench, options, on_progress), json_file)
 
 
 def _speeds(text: str) -> tuple[float, ...]:

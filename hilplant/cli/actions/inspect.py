@@ -1,4 +1,4 @@
-"""What `hilplant inspect` does: a measurement read, judged, and seen through stage 1."""
+"""Reads a measurement, prints what is wrong with it, and what stage 1 finds in it."""
 
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,7 +17,7 @@ from hilplant.measurements.preparation import Preparation, read_measurement
 from hilplant.motor_bench.bench_measurements import quantity
 
 
-class Wish(NamedTuple):
+class Inspection(NamedTuple):
     """What to inspect; `frames` is the bus database or the bench that reads a file of CAN frames."""
 
     path: Path
@@ -27,13 +27,13 @@ class Wish(NamedTuple):
     gear_ratio: float
 
 
-def inspect_data(wish: Wish) -> tuple[bool, dict[str, Any]]:
+def inspect_data(asked: Inspection) -> tuple[bool, dict[str, Any]]:
     """Print everything about a measurement; return whether it will do, and the figures."""
-    path, frames = wish.path, wish.frames
+    path, frames = asked.path, asked.frames
     is_database = frames is not None and Path(frames).suffix.lower() not in ("", ".yaml", ".yml")
     database, bench = (Path(str(frames)), None) if is_database else (None, frames)
     origin = Origin(path, None, database, bench)
-    data = read_measurement(origin, parse_columns(wish.columns), Preparation(mode=wish.mode))
+    data = read_measurement(origin, parse_columns(asked.columns), Preparation(mode=asked.mode))
     findings = examine(data)
     typer.echo(f"{path}: {len(data)} samples, {data.time_s[-1]:.4g} s, {len(rising_edges(data.park))} park edges")
     for note in data.notes:
@@ -43,7 +43,7 @@ def inspect_data(wish: Wish) -> tuple[bool, dict[str, Any]]:
     good = not any(finding.fatal for finding in findings)
     figures: dict[str, Any] = {"samples": len(data), "findings": [finding.name for finding in findings]}
     if good:
-        figures |= _motor(data, wish.gear_ratio)
+        figures |= _motor(data, asked.gear_ratio)
     return good, figures
 
 

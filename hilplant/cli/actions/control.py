@@ -1,4 +1,4 @@
-"""What `hilplant control` does: a velocity controller on a bench's interface."""
+"""A velocity controller on a bench's interface."""
 
 import math
 from collections.abc import Callable
@@ -18,7 +18,7 @@ from hilplant.units import SECOND_NS
 
 def control_command(
     bench_name: str, name: str, reference: str, seconds: float | None, channel: str | None = None
-) -> int:
+) -> None:
     """Be the controller until the time is up, or SIGTERM or Ctrl-C ends it; the relays are released at the end."""
     wanted, bench = parse_reference(reference), load_bench(bench_name)
     interface = bench.interface if channel is None else {**bench.interface, "channel": channel}
@@ -26,7 +26,7 @@ def control_command(
     controller = controller_named(name, bench.parameters.motor, period_ns / SECOND_NS)
     side, seat = bench.ecu_side(), Seat(controller, without_network(), wanted)
     node = VelocityNode(side.receive, side.send, open_transport(interface), seat)
-    node.report = _teller()
+    node.report = _printer()
     stop, clock = StopRequest(), WallClock()
     end_ns = math.inf if seconds is None else clock.now_ns() + seconds * SECOND_NS
     with ended_by_signals(stop):
@@ -34,10 +34,9 @@ def control_command(
             run_velocity_node(node, clock, lambda: stop() or clock.now_ns() >= end_ns, period_ns)
         finally:
             node.close()
-    return 0
 
 
-def _teller() -> Callable[[Report], None]:
+def _printer() -> Callable[[Report], None]:
     """Return what prints a line each second, and whenever the plant falls silent or speaks again."""
     last: list[object] = [None]
 

@@ -1,21 +1,20 @@
-"""The command `hilplant train motor`: train, write file and report, say what came out."""
+"""Trains the motor network of a bench, and writes its file, its report and its plots (6.4.3)."""
 
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from hilplant.atomic_write import make_folder
 from hilplant.bench import load_bench
+from hilplant.plots.motor_network import plot_grid, plot_paths
+from hilplant.progress import OnProgress, unseen
+from hilplant.reports.page import TrainingReport, markdown_table, write_page
 from hilplant.train.motor import MotorNetwork, train_motor, write_network
 from hilplant.train.motor_compare import Differences, Grid, over_grid, random_runs
 from hilplant.train.motor_figures import GOAL_MSE, GOAL_S, lines, path_figures, table
-from hilplant.train.motor_fit import CLOSED, OPEN
-from hilplant.train.motor_report import plot_grid, plot_paths
 from hilplant.train.motor_search import Found, search
-from hilplant.train.report import folder_of, markdown_table, write_page
 
 Figures = dict[str, Any]
 _RUNS = 100
@@ -23,19 +22,13 @@ _RUNS = 100
 _OTHER_SEED = 1_000_000
 
 
-def run_train_motor(bench_name: str, seed: int, scenarios: int, out: Path) -> tuple[bool, Figures]:
-    """Train a motor network, write `motor.yaml`, `report.md` and plots; say whether it kept its bounds, and figures."""
-    bench, folder = load_bench(bench_name), folder_of(out)
+def report_motor(
+    bench_name: str, seed: int, scenarios: int, out: Path, on_progress: OnProgress = unseen
+) -> TrainingReport:
+    """Train a motor network, write `motor.yaml`, `report.md` and plots; it kept its bounds or not."""
+    bench, folder = load_bench(bench_name), make_folder(out)
     command = f"hilplant train motor {Path(bench_name).stem} --seed {seed}"
-    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[judged]}"), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        epochs = 2 * sum(settings.epochs for _, settings in (OPEN, *CLOSED))
-        task = progress.add_task("motor network", total=epochs, judged="")
-
-        def told(stage: str, epoch: int, judged: float) -> None:
-            progress.update(task, advance=1, description=stage, judged=f"epoch {epoch}, validation {judged:.2g}")
-
-        network = train_motor(bench, seed, command, told)
+    network = train_motor(bench, seed, command, on_progress)
     write_network(network, folder / "motor.yaml")
     others = search(bench, network.networks, scenarios, seed + _OTHER_SEED)
     differences = random_runs(bench, network.networks, _RUNS, seed)
@@ -45,11 +38,11 @@ def run_train_motor(bench_name: str, seed: int, scenarios: int, out: Path) -> tu
     kept, verdict = _verdict(network, others)
     said = [*_lines(network, differences), verdict]
     page = write_page(folder, f"Motor network of the bench {bench.name}", _sections(network, said, grid))
-    print(table(list(network.paths)))
-    print("\n".join(said))
-    print(f"{folder / 'motor.yaml'} and {page} written" + (", interrupted: the best so far" * network.interrupted))
+    written = f"{folder / 'motor.yaml'} and {page} written" + (", interrupted: the best so far" * network.interrupted)
+    shown = [table(list(network.paths)), *said, written]
     checked = {f"check_{name}": value for name, value in asdict(others).items() if not name.endswith("_at")}
-    return kept, _figures(network, differences) | checked | {"check_kept_bounds": kept}
+    figures = _figures(network, differences) | checked | {"check_kept_bounds": kept}
+    return TrainingReport(shown, figures, kept)
 
 
 def _verdict(network: MotorNetwork, others: Found) -> tuple[bool, str]:

@@ -1,4 +1,4 @@
-"""What `hilplant ecu` does: the stand-in ECU on a bench's interface, its stalk written, heard on the bus, or typed."""
+"""The body ECU on a bench's interface, its stalk given as a text, received from the bus, or typed."""
 
 import math
 import os
@@ -20,7 +20,7 @@ from hilplant.signals import STATUS
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 
-def ecu_command(bench_name: str, seconds: float | None, stalk: str | None, channel: str | None = None) -> int:
+def ecu_command(bench_name: str, seconds: float | None, stalk: str | None, channel: str | None = None) -> None:
     """Be the ECU until the time is up, or SIGTERM or Ctrl-C ends it; the relays are released at the end.
 
     A written stalk goes before the one on the bus, and that before a typed one.
@@ -30,7 +30,7 @@ def ecu_command(bench_name: str, seconds: float | None, stalk: str | None, chann
     interface = bench.interface if channel is None else {**bench.interface, "channel": channel}
     side = bench.ecu_side() if stalk is None else replace(bench.ecu_side(), stalk=())
     node = EcuNode(side, open_transport(interface), controller_settings(bench.ecu))
-    node.report = _teller()
+    node.report = _printer()
     stop, clock = StopRequest(), WallClock()
     end_ns = math.inf if seconds is None else clock.now_ns() + seconds * SECOND_NS
 
@@ -42,8 +42,7 @@ def ecu_command(bench_name: str, seconds: float | None, stalk: str | None, chann
             run_ecu(node, source, clock, ended, pause_ns=round(bench.ecu.period_ms * MILLISECOND_NS))
         finally:
             node.close()
-    _tell_counts(node.counts)
-    return 0
+    _print_counts(node.counts)
 
 
 def _source(text: str | None) -> StalkSource:
@@ -67,7 +66,7 @@ def _untouched(elapsed_s: float) -> Stalk:
     return stalk_at((), elapsed_s)
 
 
-def _teller() -> Callable[[Report], None]:
+def _printer() -> Callable[[Report], None]:
     """Return what prints a line whenever the ECU changes its mind."""
     last: list[object] = [None]
 
@@ -88,7 +87,7 @@ def _line(report: Report) -> str:
     return f"{report.time_s:8.3f} s  stalk {stalk}: {phase}, relays {relays}{fault}{silent}"
 
 
-def _tell_counts(counts: list[int]) -> None:
+def _print_counts(counts: list[int]) -> None:
     """Say what the ECU refused or lost on the bus; frames of others are none of its business."""
     found = zip(STATUS, counts, strict=True)
     words = [f"{signal.name} {count}" for signal, count in found if count and signal.name != "unknown_frame"]

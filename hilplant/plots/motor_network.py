@@ -2,20 +2,17 @@
 
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 
+from hilplant.arrays import Floats
+from hilplant.plots.picture import figure_with, save
 from hilplant.train.motor_compare import Grid
-from hilplant.train.motor_data import Floats
 from hilplant.train.motor_fit import Trained
-
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt
 
 
 def plot_paths(paths: tuple[Trained, ...], path: Path) -> None:
     """Draw current and crank speed of the test part, true and in closed loop, with the errors below."""
-    figure, axes = plt.subplots(4, 2, figsize=(12, 9), sharex="col", layout="constrained")
+    figure, axes = figure_with((12, 9), 4, 2, sharex="col")
     for column, trained in enumerate(paths):
         errors, true = trained.errors(True), trained.sequence.outputs
         place = np.flatnonzero(trained.sequence.parts()[2])
@@ -30,22 +27,20 @@ def plot_paths(paths: tuple[Trained, ...], path: Path) -> None:
             lower.set(ylabel=f"error of\n{name}")
         axes[3, column].set_xlabel("time [s]")
     axes[0, 0].legend()
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    save(figure, path, 110)
 
 
 def plot_grid(grid: Grid, path: Path) -> None:
     """Draw the RMS error of the current over supply and brake, a panel for each brush and screen."""
     most = max(float(np.nanmax(values)) for values in grid.current_rms_a.values())
-    figure, axes = plt.subplots(1, len(grid.current_rms_a), figsize=(14, 3.6), sharey=True, layout="constrained")
+    figure, axes = figure_with((14, 3.6), 1, len(grid.current_rms_a), sharey=True)
     for axis, (name, values) in zip(axes, grid.current_rms_a.items(), strict=True):
         places = _edges(grid.brakes_n_m), _edges(grid.supplies_v)
         shown = axis.pcolormesh(*places, 1e3 * values, vmin=0.0, vmax=1e3 * most)
         axis.set(title=name, xlabel="brake [N m]")
     axes[0].set_ylabel("supply [V]")
     figure.colorbar(shown, ax=axes, label="RMS error of the current [mA]")
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    save(figure, path, 110)
 
 
 def _edges(values: Floats) -> Floats:

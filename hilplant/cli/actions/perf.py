@@ -1,10 +1,12 @@
-"""The figures as a table that fits 100 columns."""
+"""Measures, and prints the figures as a table that fits 100 columns."""
 
 from typing import Literal
 
 from rich.console import Console
 from rich.table import Table
 
+from hilplant.cli.progress import progress_shown
+from hilplant.perf.perf import measure
 from hilplant.perf.results import Measured, Row
 
 _WIDTH = 100
@@ -30,6 +32,15 @@ def goal_text(row: Row) -> str:
         return ""
     goal = f"{row.goal.at_most:g}" if row.goal.of_ratio else f"{row.goal.at_most:g} {row.unit}"
     return f"{'yes' if row.met else 'NO'}, {goal}"
+
+
+def measure_and_print(only: str | None = None) -> dict[str, float | str]:
+    """Measure the parts in `only`, or all; print each figure beside its limit and return the figures."""
+    with progress_shown() as on_progress:
+        found = measure(only, on_progress)
+    title = "{}, {} cores; {}; Python {}; numba {}; load before {}".format(*found.machine.values())
+    print_table(found.parts, title)
+    return found.figures
 
 
 def print_table(parts: dict[str, Measured], title: str) -> None:

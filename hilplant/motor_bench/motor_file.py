@@ -1,9 +1,8 @@
-"""What `hilplant motor` does: readings of one motor in, its parameter file out."""
+"""Readings of one motor in, its parameter file out."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-import typer
 import yaml
 
 from hilplant.atomic_write import write_text
@@ -18,8 +17,23 @@ from hilplant.motor_bench.readings import AnyReadings, BenchReadings, DataSheet
 _BRUSH = ("resistance_ohm", "inductance_henry", "constant_v_s")
 
 
-def motor_from_readings(path: Path, out: Path) -> dict[str, Any]:
-    """Write a motor file, print every parameter with its standard error, and return the figures.
+class FoundMotor(NamedTuple):
+    """The parameters of a motor with their standard errors, and which of them were given and not computed."""
+
+    values: Values
+    given: set[str]
+
+    @property
+    def figures(self) -> dict[str, float]:
+        """Every value and its standard error by flat names."""
+        flat: dict[str, float] = {}
+        for name, value in self.values.items():
+            flat |= {name: value.n, f"{name}_standard_error": value.s}
+        return flat
+
+
+def motor_from_readings(path: Path, out: Path) -> FoundMotor:
+    """Write a motor file to `out` from the readings in `path`.
 
     Raises
     ------
@@ -36,12 +50,7 @@ def motor_from_readings(path: Path, out: Path) -> dict[str, Any]:
     MotorFile.model_validate(written)
     head = "# From readings; `identified` has their standard errors.\n"
     write_text(out, head + yaml.safe_dump(written, sort_keys=False))
-    given = readings.given.model_fields_set
-    for name, value in values.items():
-        how_sure = ", given" if name in given else f" +- {value.s:.2g}" if value.s else ", without an error"
-        typer.echo(f"  {name:22} {value.n:.6g}{how_sure}")
-    typer.echo(f"{out} written; put it under `motor` of a bench")
-    return {key: number for name, value in values.items() for key, number in _figures(name, value.n, value.s)}
+    return FoundMotor(values, readings.given.model_fields_set)
 
 
 def _read(path: Path) -> BenchReadings | DataSheet:
@@ -74,7 +83,3 @@ def _document(path: Path, readings: BenchReadings | DataSheet, values: Values) -
     head = {"name": readings.name, "source": readings.source, "status": readings.status}
     numbers = {**brushes, **rest, "gear_ratio": readings.gear_ratio}
     return head | numbers | ({"assumed": assumed} if assumed else {}) | {"identified": facts}
-
-
-def _figures(name: str, value: float, error: float) -> list[tuple[str, float]]:
-    return [(name, value), (f"{name}_standard_error", error)]

@@ -1,4 +1,4 @@
-"""What `hilplant demo` does: starts the plant, shows it live, then draws and sums up what was recorded."""
+"""The demonstration: starts the plant, shows it live, then draws and sums up what was recorded."""
 
 import multiprocessing
 import signal
@@ -9,6 +9,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from hilplant.atomic_write import cannot_be_written, make_folder
 from hilplant.cli.display import Scene, watch
 from hilplant.demo.plant import Failed, Message, Started, serve_demo
 from hilplant.demo.sequence import WHOLE_S, Sequence, sequence
@@ -21,7 +22,7 @@ from hilplant.runtime.server import Summary
 RECORDING, PLOT = "demo.hilrec", "demo.png"
 
 
-def run_demo(seconds: float | None, out: Path) -> int:
+def run_demo(seconds: float | None, out: Path) -> None:
     """Run the demonstration; leaves recording and plot in `out`, those of an earlier one are replaced."""
     plan = sequence(seconds)
     folder = _clear_folder(out)
@@ -34,17 +35,17 @@ def run_demo(seconds: float | None, out: Path) -> int:
     if plan.seconds < WHOLE_S:
         console.print(f"{plan.seconds:g} s show the beginning alone; all modes take {WHOLE_S:g} s", highlight=False)
     summary = _serve_and_watch(plan, folder / RECORDING, console)
-    summarise(summary, folder / RECORDING, folder / PLOT, console)
-    return 0
+    lines = summarise(summary, folder / RECORDING, folder / PLOT)
+    console.print("\n".join(lines), highlight=False, markup=False, soft_wrap=True)
 
 
 def _clear_folder(folder: Path) -> Path:
+    make_folder(folder)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
         for name in (RECORDING, PLOT):
             (folder / name).unlink(missing_ok=True)
     except OSError as error:
-        raise Failure(f"{folder}: cannot be written ({error.strerror})") from error
+        raise cannot_be_written(folder, error) from error
     return folder
 
 

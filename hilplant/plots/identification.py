@@ -5,31 +5,26 @@ import io
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from hilplant.identify.genetic import Outcome
 from hilplant.identify.three_stages import Identified
 from hilplant.identify.uncertainty import correlation
 from hilplant.identify.validation import Comparison
+from hilplant.plots.picture import figure_with
 
 _MEASURED, _SIMULATED, _RESIDUAL = "#9aa5b1", "#c2410c", "#1d4ed8"
 
 
-def _uri(figure: Figure) -> str:
+def _uri(figure: Any) -> str:
     file = io.BytesIO()
     figure.savefig(file, format="png", dpi=110)
     return "data:image/png;base64," + base64.b64encode(file.getvalue()).decode("ascii")
 
 
-def _figure(height: float, rows: int = 1, **options: Any) -> tuple[Figure, Any]:
-    figure = Figure(figsize=(10.0, height), layout="constrained")
-    return figure, figure.subplots(rows, 1, **options)
-
-
 def run_picture(comparison: Comparison) -> str:
     """Draw measured and simulated current, what is left between them, and the park steps."""
     run = comparison.run
-    figure, (current, residual, steps) = _figure(6.2, 3, sharex=True, height_ratios=(3, 1.4, 1.1))
+    figure, (current, residual, steps) = figure_with((10.0, 6.2), 3, sharex=True, height_ratios=(3, 1.4, 1.1))
     time_s = run.time_s
     current.plot(time_s, np.where(run.valid, run.current_a, np.nan), color=_MEASURED, lw=1.6, label="measured")
     current.plot(time_s, comparison.simulated_a, color=_SIMULATED, lw=0.9, label="simulated")
@@ -51,7 +46,7 @@ def run_picture(comparison: Comparison) -> str:
 
 def convergence_picture(outcome: Outcome) -> str:
     """Draw the lowest and the mean cost of the search over its evaluations."""
-    figure, axes = _figure(3.0)
+    figure, axes = figure_with((10.0, 3.0))
     evaluations = [seen.evaluations for seen in outcome.history]
     axes.semilogy(evaluations, [seen.mean for seen in outcome.history], color=_MEASURED, lw=1.2, label="mean")
     axes.semilogy(evaluations, [seen.best for seen in outcome.history], color=_SIMULATED, lw=1.6, label="lowest")
@@ -64,8 +59,7 @@ def convergence_picture(outcome: Outcome) -> str:
 
 def correlation_picture(found: Identified) -> str:
     """Draw the correlation of the parameters."""
-    figure = Figure(figsize=(8.2, 6.4), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = figure_with((8.2, 6.4))
     names = [verdict.name for verdict in found.verdicts]
     image = axes.imshow(correlation(found.solution, found.known), vmin=-1.0, vmax=1.0, cmap="RdBu_r")
     axes.set_xticks(range(len(names)), names, rotation=60, ha="right", fontsize=8)

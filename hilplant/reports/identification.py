@@ -6,11 +6,11 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from hilplant.atomic_write import write_text
-from hilplant.identify.report_pictures import convergence_picture, correlation_picture, run_picture
 from hilplant.identify.result_files import Origin
 from hilplant.identify.starting_point import Known
 from hilplant.identify.three_stages import Identified
 from hilplant.identify.validation import Comparison
+from hilplant.plots.identification import convergence_picture, correlation_picture, run_picture
 
 
 def write_report(path: Path, found: Identified, known: Known, origin: Origin, notes: list[str]) -> None:
@@ -23,9 +23,9 @@ def write_report(path: Path, found: Identified, known: Known, origin: Origin, no
 
     """
     environment = Environment(
-        loader=PackageLoader("hilplant.identify", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+        loader=PackageLoader("hilplant.reports", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
     )
-    text = environment.get_template("report.html.j2").render(_content(found, known, origin, notes))
+    text = environment.get_template("identification.html.j2").render(_content(found, known, origin, notes))
     write_text(path, text)
 
 

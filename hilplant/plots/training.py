@@ -1,44 +1,15 @@
-"""What a training leaves behind for people: a page in Markdown with the figures, and plots beside it."""
+"""Pictures of the fits to the load: a torque network and its errors, its number of neurons, the polynomials."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
-import matplotlib
 import numpy as np
-from numpy.typing import NDArray
 
-from hilplant.failure import Failure
+from hilplant.plots.picture import figure_with, save
 from hilplant.train.no_load import SPEEDS_RAD_S, Polynomials, Shape
 from hilplant.train.torque_file import Dense
 from hilplant.train.torque_study import Studied
 from hilplant.train.torque_thesis import TABLE_6_1
-
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt
-
-Floats = NDArray[np.float64]
-
-
-def folder_of(path: Path) -> Path:
-    """Make a folder, or say why not."""
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise Failure(f"{path}: cannot be made ({error.strerror})") from error
-    return path
-
-
-def write_page(folder: Path, title: str, sections: Sequence[str]) -> Path:
-    """Write `report.md`: a title and sections with a blank line between them."""
-    page = folder / "report.md"
-    page.write_text("\n\n".join([f"# {title}", *sections]) + "\n", encoding="utf-8")
-    return page
-
-
-def markdown_table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
-    """Return a table."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join(f"| {' | '.join(_shown(cell) for cell in line)} |" for line in lines)
 
 
 def plot_errors(dense: Dense, path: Path) -> None:
@@ -46,7 +17,7 @@ def plot_errors(dense: Dense, path: Path) -> None:
     speeds = np.unique(dense.states[:, 1])
     angles = np.degrees(dense.states[: len(dense.states) // len(speeds), 0])
     shape = (len(speeds), len(angles))
-    figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True, layout="constrained")
+    figure, axes = figure_with((11, 7), 2, 2, sharex=True)
     for row, screen in enumerate(("dry", "wet")):
         physical, errors = (values[:, row].reshape(shape) for values in (dense.physical, dense.errors))
         for place in np.linspace(0, len(speeds) - 1, 4).astype(int):
@@ -59,13 +30,12 @@ def plot_errors(dense: Dense, path: Path) -> None:
         figure.colorbar(shown, ax=axes[row, 1])
         axes[1, row].set_xlabel("crank angle [deg]")
     axes[0, 0].legend(loc="upper right", fontsize=8)
-    figure.savefig(path, dpi=120)
-    plt.close(figure)
+    save(figure, path, 120)
 
 
 def plot_study(studied: Sequence[Studied], path: Path) -> None:
     """Draw what Figure 6-7 shows: errors over the number of neurons, ours and those of Table 6-1."""
-    figure, axis = plt.subplots(figsize=(9, 5), layout="constrained")
+    figure, axis = figure_with((9, 5))
     neurons = sorted(TABLE_6_1)
     axis.semilogy(neurons, [TABLE_6_1[n][3] for n in neurons], "k.-", label="thesis, training data")
     axis.semilogy(neurons, [TABLE_6_1[n][4] for n in neurons], "k.--", label="thesis, separate validation")
@@ -78,22 +48,16 @@ def plot_study(studied: Sequence[Studied], path: Path) -> None:
     axis.set(xlabel="neurons", ylabel="mean squared error [(N m)2]", xticks=neurons)
     axis.legend(fontsize=8)
     axis.grid(alpha=0.3)
-    figure.savefig(path, dpi=120)
-    plt.close(figure)
+    save(figure, path, 120)
 
 
 def plot_shape(shape: Shape, fitted: Polynomials, path: Path) -> None:
     """Draw the no-load torque of a linkage and its polynomials, dashed, at the five speeds."""
-    figure, axis = plt.subplots(figsize=(9, 5), layout="constrained")
+    figure, axis = figure_with((9, 5))
     for speed in SPEEDS_RAD_S:
         line = axis.plot(np.degrees(shape.angles), shape.torque(speed), label=f"{speed:g} rad/s")[0]
         axis.plot(np.degrees(shape.angles), fitted.torque(shape.angles, speed), "--", color=line.get_color())
     axis.set(xlabel="crank angle [deg]", ylabel="torque without arms and blades [N m]")
     axis.legend(fontsize=8)
     axis.grid(alpha=0.3)
-    figure.savefig(path, dpi=120)
-    plt.close(figure)
-
-
-def _shown(cell: object) -> str:
-    return f"{cell:.4g}" if isinstance(cell, float) else str(cell)
+    save(figure, path, 120)

@@ -1,13 +1,12 @@
-"""What `hilplant identify` does: files in, three stages with their progress, files and report out."""
+"""Identification from files of measurements to files of a bench; a run that was killed can go on."""
 
 import hashlib
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-import typer
 
 from hilplant.bench import Bench, load_bench
 from hilplant.failure import Failure
@@ -15,15 +14,15 @@ from hilplant.identify.executor import Executor, here, on_cluster
 from hilplant.identify.experiment import Run
 from hilplant.identify.genetic import Settings
 from hilplant.identify.journal import Journal
-from hilplant.identify.optimisers import budget, optimiser
+from hilplant.identify.optimisers import optimiser
 from hilplant.identify.parameters import BY_NAME, Choice, chosen
-from hilplant.identify.progress_display import ProgressDisplay
 from hilplant.identify.result_files import Origin, write_bench
 from hilplant.identify.run_of_data import make_run
 from hilplant.identify.starting_point import Known, starting_point
-from hilplant.identify.three_stages import EXPLAINED, Identified, Task, identify
+from hilplant.identify.three_stages import Identified, Task, identify
 from hilplant.measurements.measurement import Samples
 from hilplant.measurements.named_data import Named, read_named
+from hilplant.progress import OnProgress, unseen
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +32,6 @@ class Request:
     data: tuple[str, ...]
     bench: str
     out: Path
-    report: Path | None = None
     held_out: tuple[str, ...] = ()
     hold: tuple[str, ...] = ()
     also: tuple[str, ...] = ()
@@ -49,8 +47,22 @@ class Request:
     date: str = ""
 
 
-def identify_files(request: Request) -> dict[str, Any]:
-    """Identify, write everything, print what was found; return the figures."""
+class IdentifiedFiles(NamedTuple):
+    """What was found, from what, and the files that were written.
+
+    `notes` are what there is to say of the data; `journal` is to be removed when all that is wanted has been written.
+    """
+
+    found: Identified
+    known: Known
+    origin: Origin
+    notes: list[str]
+    written: list[Path]
+    journal: Journal
+
+
+def identify_files(request: Request, on_progress: OnProgress = unseen) -> IdentifiedFiles:
+    """Identify what a request names, and write the bench and its parameter files."""
     bench = load_bench(request.bench)
     optimiser(request.search)
     settings = _settings(request)
@@ -65,24 +77,16 @@ def identify_files(request: Request) -> dict[str, Any]:
         executor: Executor = here
         if request.dask is not None:
             executor = open_things.enter_context(on_cluster(request.dask))
-        display = open_things.enter_context(ProgressDisplay(budget(settings)))
         task = Task(
             bench, _runs(fitted, bench), choice, known.values, _runs(held_out, bench), settings, request.seed,
-            request.search, request.ordered, executor, journal.answering, display,
+            request.search, request.ordered, executor, journal.answering, on_progress,
         )  # fmt: skip
         found = identify(task)
     fitted_files, held_files = (tuple((each.text, each.data) for each in named) for named in (fitted, held_out))
     origin = Origin(fitted_files, held_files, request.date, request.seed, request.search)
     written = write_bench(request.out, found, origin)
     notes = [note for named in fitted for note in named.notes] + list(known.notes)
-    if request.report is not None:
-        from hilplant.identify.report import write_report
-
-        write_report(request.report, found, known, origin, notes)
-        written.append(request.report)
-    journal.remove()
-    _print(found, known, written)
-    return figures(found)
+    return IdentifiedFiles(found, known, origin, notes, written, journal)
 
 
 def _settings(request: Request) -> Settings:
@@ -133,40 +137,6 @@ def _identity(request: Request, bench: Bench, named: list[Named]) -> str:
     choices = (request.hold, request.also, request.search, request.generations, request.population, request.ordered)
     digest.update(repr((choices, request.seed)).encode())
     return digest.hexdigest()
-
-
-def _print(found: Identified, known: Known, written: list[Path]) -> None:
-    for note in known.notes:
-        typer.echo(note)
-    rows = zip(found.verdicts, found.intervals, found.task.choice.values, strict=True)
-    typer.echo(f"{'parameter':24}{'before':>12}{'found':>12}   95 % interval")
-    for verdict, interval, before in rows:
-        text = "not told by these data"
-        if verdict.told:
-            text = " to ".join("open" if side is None else f"{side:.5g}" for side in interval)
-        elif verdict.together:
-            text += f", not apart from {', '.join(verdict.together)}"
-        typer.echo(f"{verdict.name:24}{before:12.5g}{verdict.value:12.5g}   {text}")
-    for force in found.forces:
-        error = f"{force.force_n:.4g} N, standard error {force.standard_error_n:.2g} N"
-        typer.echo(f"friction of a blade, {force.screen}, {force.speed_mm_s:g} mm/s: {error}")
-    for role, compared in (("fitted", found.fitted), ("held out", found.held_out)):
-        for each in (comparison.error for comparison in compared):
-            typer.echo(f"{each.name} ({role}): current {each.rms_current_a:.4g} A rms, noise {each.noise_a:.4g} A")
-    for comparison in found.fitted:
-        left = comparison.error
-        if left.rms_current_a > EXPLAINED * left.noise_a:
-            text = "the model does not explain it, so intervals are too narrow; try another --seed, or look at the data"
-            ratio = left.rms_current_a / left.noise_a
-            typer.echo(f"{left.name}: the current's error is {ratio:.1f} times the noise: {text}", err=True)
-    times = found.times
-    for hint in found.advice:
-        typer.echo(f"would tell {', '.join(hint.tells)}: {hint.text}")
-    typer.echo(
-        f"search: {times.global_evaluations} evaluations in {times.global_s:.1f} s, {times.evaluations_per_s:.0f}/s; "
-        f"refinement {times.local_s:.1f} s, intervals {times.intervals_s:.1f} s"
-    )
-    typer.echo(f"written: {', '.join(map(str, written))}")
 
 
 def figures(found: Identified) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What `hilplant validate` does: a bench held against recordings."""
+"""Validates a bench against recordings."""
 
 from collections.abc import Sequence
 from typing import Any
