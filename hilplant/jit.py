@@ -2,6 +2,7 @@
 
 import atexit
 import hashlib
+import inspect
 import os
 import shutil
 import signal
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+import numba.extending
 from platformdirs import user_cache_path
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -28,7 +30,7 @@ def _sources_hash(*rooms: str) -> str:
     for room in rooms:
         for source in sorted((package / room).glob("*.py")):
             digest.update(source.read_bytes())
-    for name in ("jit.py", "signals.py", "units.py"):
+    for name in ("declaration.py", "jit.py", "signals.py", "units.py"):
         digest.update((package / name).read_bytes())
     return digest.hexdigest()[:16]
 
@@ -62,23 +64,43 @@ def _cache_folder() -> Path:
 vars(numba.config)["CACHE_DIR"] = str(_cache_folder())
 
 
+#: All that a step calls becomes one piece of code: calls between pieces cost a quarter of the step. Without numba's
+#: run time nobody counts references to the caller's arrays, atomically, at every call: another quarter.
+_OPTIONS: Any = {"error_model": "numpy", "forceinline": True, "_nrt": False}
+
+
 def compiled(function: Function) -> Function:
     """Compile a model function. No fastmath: results must not depend on how the compiler reorders a sum.
 
     It may read and write arrays of its caller. It cannot make one, which is an error when it is compiled, and must not
-    return one to Python, see :func:`compiled_with_arrays`.
+    return one to Python.
     """
-    # all that a step calls becomes one piece of code: calls between pieces cost a quarter of the step. Without
-    # numba's run time nobody counts references to the caller's arrays, atomically, at every call: another quarter.
-    options: dict[str, Any] = {"cache": True, "error_model": "numpy", "forceinline": True, "_nrt": False}
-    return cast(Function, numba.njit(**options)(function))
+    return cast(Function, numba.njit(cache=True, **_OPTIONS)(function))
 
 
-def compiled_with_arrays(function: Function) -> Function:
-    """Compile a model function that returns part of an array to Python, for which references must be counted."""
-    # said, not left out: what is left out comes from whoever happens to call it first
-    options: dict[str, Any] = {"cache": True, "error_model": "numpy", "forceinline": True, "_nrt": True}
-    return cast(Function, numba.njit(**options)(function))
+#: The lines of a function's body, and what the names in it mean.
+Written = tuple[list[str], dict[str, Any]]
+
+
+def written_out(function: Callable[..., Any]) -> Callable[[Callable[..., Written]], Callable[..., Written]]:
+    """Let compiled code call `function`, with a body that is written for the records among its arguments.
+
+    The decorated writer is given, for each argument, the class of the record that it is or that it names, or else
+    None; it returns the body, in which the arguments have their names.
+    """
+    arguments = ", ".join(inspect.signature(function).parameters)
+
+    def register(writer: Callable[..., Written]) -> Callable[..., Written]:
+        def implementation(*kinds: Any) -> Callable[..., Any]:
+            lines, names = writer(*(getattr(kind, "instance_class", None) for kind in kinds))
+            exec("\n    ".join([f"def body({arguments}):", *lines]), names)
+            return cast(Callable[..., Any], names["body"])
+
+        # options that are left out would come from whoever happens to call it first
+        numba.extending.overload(function, jit_options=_OPTIONS, strict=False)(implementation)
+        return writer
+
+    return register
 
 
 def compiled_for_threads(function: Function) -> Function:

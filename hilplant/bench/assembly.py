@@ -24,7 +24,8 @@ from hilplant.checked_yaml.problems import BenchError, Problem
 from hilplant.checked_yaml.reading import Description, Reading
 from hilplant.models.park_phase import phase_at_rest
 from hilplant.models.park_switch import cam_closed
-from hilplant.models.records import Parameters, State, pack
+from hilplant.models.records import Parameters, State
+from hilplant.models.row import pack
 from hilplant.signals import INPUTS
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
@@ -101,13 +102,12 @@ def check_bench(name: str | Path = "default") -> list[Problem]:
     return []
 
 
-def initial_state(parameters: Parameters, initial: Mapping[str, float]) -> NDArray[np.float64]:
+def initial_state(parameters: Parameters, initial: Mapping[str, Any]) -> NDArray[np.float64]:
     """Return the row of the state in which a run begins; the park switch is at rest there."""
     crank_angle_rad = initial["crank_angle_rad"]
     contact = cam_closed(crank_angle_rad, 0.0, parameters.park_switch)
     phase = phase_at_rest(crank_angle_rad, parameters.park_switch)
-    state = State(initial["current_a"], initial["motor_speed_rad_s"], crank_angle_rad, contact, 0.0, 0.0, phase)
-    return pack(state)
+    return pack(State(park_contact=contact, park_phase=phase)._replace(**initial))
 
 
 def _assemble(reading: Reading, path: Path) -> Bench | None:

@@ -13,7 +13,8 @@ from hilplant.bus.codec import ReceivedMessage, SentMessage, received_message, s
 from hilplant.bus.mapping import MappingError
 from hilplant.bus.transport import wrong_interface
 from hilplant.checked_yaml.place import Place
-from hilplant.signals import INPUT_INDEX, INPUTS, PUBLISHED, Signal
+from hilplant.declaration import Signal
+from hilplant.signals import INPUT_INDEX, INPUTS, PUBLISHED
 
 RELAYS_OPEN = {"relay_on": False, "relay_fast": False}
 

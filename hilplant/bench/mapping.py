@@ -13,7 +13,7 @@ from hilplant.bus.mapping import MappingError, SignalMapping, link
 from hilplant.bus.protection import Protection, ProtectionError
 from hilplant.checked_yaml.place import Place
 from hilplant.checked_yaml.problems import suggestion
-from hilplant.signals import Signal
+from hilplant.declaration import Signal
 
 
 @dataclass(frozen=True, slots=True)

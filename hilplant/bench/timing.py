@@ -7,7 +7,8 @@ from hilplant.bench.description import ReceiveEntry, SendEntry
 from hilplant.bus.codec import Timing
 from hilplant.checked_yaml.place import Place
 from hilplant.checked_yaml.problems import suggestion
-from hilplant.signals import PUBLISHED, Signal
+from hilplant.declaration import Signal
+from hilplant.signals import PUBLISHED
 from hilplant.units import MILLISECOND_NS
 
 #: A message that is supervised may stay away for so many cycle times, when nothing else is said.

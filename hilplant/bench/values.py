@@ -5,7 +5,8 @@ from typing import Any
 
 from hilplant.checked_yaml.place import Place
 from hilplant.checked_yaml.problems import suggestion
-from hilplant.signals import INPUT_INDEX, INPUTS, Signal
+from hilplant.declaration import Signal
+from hilplant.signals import INPUT_INDEX, INPUTS
 
 
 def signal_value(signal: Signal, written: Any) -> float:

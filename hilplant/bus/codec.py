@@ -21,7 +21,7 @@ from hilplant.units import MILLISECOND_NS
 if TYPE_CHECKING:
     from cantools.database.can.message import Message
 
-    from hilplant.signals import Signal
+    from hilplant.declaration import Signal
 
 __all__ = [
     "MappingError",

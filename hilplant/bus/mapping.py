@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from cantools.database.can.message import Message
     from cantools.database.can.signal import Signal as DatabaseSignal
 
-    from hilplant.signals import Signal
+    from hilplant.declaration import Signal
 
 #: Names of a flag's two values that a choice may be mapped to.
 FLAG_LABELS = {"off": 0.0, "false": 0.0, "0": 0.0, "on": 1.0, "true": 1.0, "1": 1.0}

@@ -1,17 +1,27 @@
 """Plant and velocity controller in one compiled loop: the step of the server, its supply commanded by a controller."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from hilplant.control.controller import Tables, control
 from hilplant.control.observer import correct, learn_resistance, predict
 from hilplant.control.records import AT_REST, Controller, Estimate, Measured, Memory, Model
 from hilplant.jit import compiled
 from hilplant.models.park_switch import contact_now
-from hilplant.models.plant import step, write
-from hilplant.models.records import Inputs, Parameters, State, unpack_inputs, unpack_parameters, unpack_state
+from hilplant.models.plant import step
+from hilplant.models.records import Parameters, State
+from hilplant.models.row import changed, unpack, write
+from hilplant.signals import Inputs
 
 #: Columns of a trace: estimated speed of the crank [rad/s], K in force, resistance over the model's, weights.
 TRACE = ("estimated_speed_rad_s", "gain", "resistance_factor", "weight_integral", "weight_proportional")
+
+
+class Commanded(NamedTuple):
+    """The inputs of the plant that a controller sets."""
+
+    relay_on: float
+    relay_fast: float
+    supply_v: float
 
 
 @compiled
@@ -25,20 +35,7 @@ def measure(state: State, parameters: Parameters) -> Measured:
 @compiled
 def commanded(inputs: Inputs, voltage_v: float, fast: float) -> Inputs:
     """Return the inputs of a tick with a controller's command in them: supply, ON/OFF relay, FAST/SLOW relay."""
-    return Inputs(
-        1.0 if voltage_v > 0.0 else 0.0,
-        fast,
-        voltage_v,
-        inputs.screen,
-        inputs.vehicle_speed_m_s,
-        inputs.brake_torque_n_m,
-        inputs.left_screen,
-        inputs.right_screen,
-        inputs.left_wear,
-        inputs.right_wear,
-        inputs.left_force,
-        inputs.right_force,
-    )
+    return changed(inputs, Commanded(relay_on=1.0 if voltage_v > 0.0 else 0.0, relay_fast=fast, supply_v=voltage_v))
 
 
 @compiled
@@ -60,12 +57,12 @@ def run_rows(memory: Memory, controller: Controller, tables: Tables, plant: Any,
     """
     state_row, parameter_row, plant_tables = plant
     input_rows, references, output_rows, trace_rows = rows
-    parameters = unpack_parameters(parameter_row)
-    state = unpack_state(state_row)
+    parameters = unpack(Parameters, parameter_row)
+    state = unpack(State, state_row)
     for index in range(references.shape[0]):
         measured = measure(state, parameters)
         memory, command = control(memory, measured, references[index], controller, tables)
-        inputs = commanded(unpack_inputs(input_rows[index]), command.voltage_v, command.fast)
+        inputs = commanded(unpack(Inputs, input_rows[index]), command.voltage_v, command.fast)
         state, outputs = step(state, inputs, parameters, plant_tables)
         write(outputs, output_rows[index])
         trace_rows[index, 0] = memory.estimate.motor_speed_rad_s / parameters.motor.gear_ratio

@@ -4,18 +4,18 @@ from typing import Any
 
 import numpy as np
 
-from hilplant.control.closed_loop import commanded, measure
+from hilplant.control.closed_loop import Commanded, commanded, measure
 from hilplant.control.controller import Tables, control
 from hilplant.control.records import POWER_ON, Command, Controller, Measured, Memory
 from hilplant.control.reference import Reference
 from hilplant.jit import compiled
-from hilplant.models.plant import write
-from hilplant.models.records import Inputs, State, unpack_inputs, unpack_parameters, unpack_state
-from hilplant.signals import INPUT_INDEX
+from hilplant.models.records import STATE_INDEX, Parameters, State
+from hilplant.models.row import unpack, write
+from hilplant.signals import INPUT_INDEX, Inputs
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 #: The plant's inputs that a controller commands, by index.
-COMMANDED = frozenset(INPUT_INDEX[name] for name in ("relay_on", "relay_fast", "supply_v"))
+COMMANDED = frozenset(INPUT_INDEX[name] for name in Commanded._fields)
 #: A controller in the loop that was not asked for longer than this has been put aside: it begins anew.
 ASIDE_NS = 50 * MILLISECOND_NS
 
@@ -48,7 +48,7 @@ class LoopSeat(Seat):
         """Sit down beside a plant with these packed parameters."""
         super().__init__(controller, tables, reference)
         self._parameter_row, self._asked_ns = parameter_row, 0
-        plant = (np.zeros(len(State._fields)), parameter_row, np.zeros(len(Inputs._fields)))
+        plant = (np.zeros(len(STATE_INDEX)), parameter_row, np.zeros(len(INPUT_INDEX)))
         _drive(POWER_ON, 0.0, controller, tables, plant)
 
     def drive(self, now_ns: int, state_row: Any, input_row: Any) -> None:
@@ -74,8 +74,8 @@ def _decide(
 @compiled
 def _drive(memory: Memory, reference: float, controller: Controller, tables: Tables, plant: Any) -> Memory:
     state_row, parameter_row, input_row = plant
-    parameters = unpack_parameters(parameter_row)
-    measured = measure(unpack_state(state_row), parameters)
+    parameters = unpack(Parameters, parameter_row)
+    measured = measure(unpack(State, state_row), parameters)
     memory, command = control(memory, measured, reference, controller, tables)
-    write(commanded(unpack_inputs(input_row), command.voltage_v, command.fast), input_row)
+    write(commanded(unpack(Inputs, input_row), command.voltage_v, command.fast), input_row)
     return memory

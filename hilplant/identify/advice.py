@@ -16,13 +16,13 @@ from hilplant.failure import Failure
 from hilplant.identify.experiment import Run
 from hilplant.identify.local_search import Solution
 from hilplant.identify.parameters import Choice, search_space
-from hilplant.identify.places import PLACE
 from hilplant.identify.residuals import Problem, directions
 from hilplant.identify.run_of_data import make_run
 from hilplant.identify.twin import CLEAN, Condition, played, spoilt
 from hilplant.identify.uncertainty import LEAST, NORMAL_95, Verdict
 from hilplant.measurements.measurement import Samples
 from hilplant.models.load import LOADS
+from hilplant.models.records import PARAMETER_INDEX
 from hilplant.signals import INPUT_INDEX
 from hilplant.units import SECOND_NS
 
@@ -111,7 +111,7 @@ def _rows_of(bench: Bench, solution: Solution, what: Experiment) -> Matrix | Non
     choice = problem.choice.without((), solution.values)
     if not what.linkage:
         base = choice.base_row.copy()
-        base[PLACE["load.model"]] = LOADS.index("none")
+        base[PARAMETER_INDEX["load.model"]] = LOADS.index("none")
         choice = Choice(choice.parameters, base)
     try:
         runs = _imagined(bench, choice.base_row, what)

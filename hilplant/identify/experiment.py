@@ -13,16 +13,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hilplant.identify.places import PLACE, STATE_PLACE
 from hilplant.measurements.measurement import Mask, Samples
+from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX
 from hilplant.simulation.batch import simulate_batch
 from hilplant.units import TURN_RAD
 
 COLUMNS = ("current_a", "crank_angle_rad", "park_contact")
 
-_STEP, _GEAR_RATIO = PLACE["step_s"], PLACE["motor.gear_ratio"]
-_PARK_ANGLE, _HALF_WINDOW = PLACE["park_switch.angle_rad"], PLACE["park_switch.half_window_rad"]
-_BOUNCE, _CIRCUIT = PLACE["park_switch.bounce_ticks"], PLACE["park_switch.circuit"]
+_STEP, _GEAR_RATIO = PARAMETER_INDEX["step_s"], PARAMETER_INDEX["motor.gear_ratio"]
+_PARK_ANGLE, _HALF_WINDOW = PARAMETER_INDEX["park_switch.angle_rad"], PARAMETER_INDEX["park_switch.half_window_rad"]
+_BOUNCE, _CIRCUIT = PARAMETER_INDEX["park_switch.bounce_ticks"], PARAMETER_INDEX["park_switch.circuit"]
 
 
 class Start(NamedTuple):
@@ -98,12 +98,12 @@ def simulate_run(
 
 
 def _states(run: Run, rows: NDArray[np.float64], first: Samples, starts: Samples) -> NDArray[np.float64]:
-    states = np.zeros((len(rows), len(STATE_PLACE)))
-    states[:, STATE_PLACE["current_a"]] = run.start.current_a
-    states[:, STATE_PLACE["park_contact"]] = run.start.contact
-    states[:, STATE_PLACE["crank_angle_rad"]] = first % TURN_RAD
+    states = np.zeros((len(rows), len(STATE_INDEX)))
+    states[:, STATE_INDEX["current_a"]] = run.start.current_a
+    states[:, STATE_INDEX["park_contact"]] = run.start.contact
+    states[:, STATE_INDEX["crank_angle_rad"]] = first % TURN_RAD
     if not run.start.at_rest:
-        states[:, STATE_PLACE["motor_speed_rad_s"]] = starts * rows[:, _GEAR_RATIO]
+        states[:, STATE_INDEX["motor_speed_rad_s"]] = starts * rows[:, _GEAR_RATIO]
     return states
 
 

@@ -10,7 +10,8 @@ from hilplant.identify.parameters import Choice
 from hilplant.identify.uncertainty import Spread
 from hilplant.measurements.measurement import Samples
 from hilplant.models.friction import coefficient
-from hilplant.models.records import unpack_parameters
+from hilplant.models.records import Parameters
+from hilplant.models.row import unpack
 from hilplant.signals import INPUT_INDEX, SCREENS
 
 #: Speeds of the blade at which the force is told [mm/s].
@@ -50,6 +51,6 @@ def _at(solution: Solution, known: Spread, name: str, screen: float, speed_mm_s:
 def force(choice: Choice, values: Samples, screen: float, speed_mm_s: float) -> float:
     """Return the friction force of the left blade [N]."""
     row: NDArray[np.float64] = choice.rows(values[np.newaxis])[0]
-    load = unpack_parameters.py_func(row).load if hasattr(unpack_parameters, "py_func") else unpack_parameters(row).load
+    load = unpack(Parameters, row).load
     mu, _ = coefficient(speed_mm_s, screen, load.left_blade.force_n, load.friction)
     return float(load.left_blade.wear * load.left_blade.force_n * mu)

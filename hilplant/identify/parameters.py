@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.failure import Failure
-from hilplant.identify.places import PLACE
 from hilplant.measurements.measurement import Samples
+from hilplant.models.records import PARAMETER_INDEX
 
 #: (5.22): the search goes from half to twice of what is known; for inductances, which stage 1 tells badly, from a
 #: quarter to four times, and for friction too, whose published sets (Tables 4-1, 4-2, 5-8) differ as much.
@@ -43,8 +43,8 @@ class Parameter(NamedTuple):
     signed: bool = False
 
 
-_MOTOR_AT = {name.removeprefix("motor."): place for name, place in PLACE.items()}
-_FRICTION_AT = {name.removeprefix("load.friction."): place for name, place in PLACE.items()}
+_MOTOR_AT = {name.removeprefix("motor."): place for name, place in PARAMETER_INDEX.items()}
+_FRICTION_AT = {name.removeprefix("load.friction."): place for name, place in PARAMETER_INDEX.items()}
 
 _MOTOR = (
     Parameter("slow_resistance_ohm", "ohm", _MOTOR_AT["slow.resistance_ohm"], FACTOR, 1.2),
@@ -75,10 +75,10 @@ _FRICTION = (
 _FORCE = Parameter(
     "force_n",
     "N",
-    PLACE["load.left_blade.force_n"],
+    PARAMETER_INDEX["load.left_blade.force_n"],
     FACTOR,
     7.6,
-    (Link("right_force_n", PLACE["load.right_blade.force_n"], 1.0),),
+    (Link("right_force_n", PARAMETER_INDEX["load.right_blade.force_n"], 1.0),),
 )
 
 #: The seventeen of (5.1) and (5.23), in that order. What (5.1) calls mu_wet_2 is mu_wet_3 of (4.50).
@@ -89,8 +89,8 @@ OPTIONAL = (
     Parameter("coulomb_torque_n_m", "N m", _MOTOR_AT["coulomb_torque_n_m"], WIDE_FACTOR, 0.04),
     Parameter("gear_efficiency", "", _MOTOR_AT["gear_efficiency"], FACTOR, 1.0, highest=1.0),
     Parameter("gear_back_efficiency", "", _MOTOR_AT["gear_back_efficiency"], FACTOR, 0.3, highest=1.0),
-    Parameter("left_wear", "", PLACE["load.left_blade.wear"], FACTOR, 1.0),
-    Parameter("right_wear", "", PLACE["load.right_blade.wear"], FACTOR, 1.0),
+    Parameter("left_wear", "", PARAMETER_INDEX["load.left_blade.wear"], FACTOR, 1.0),
+    Parameter("right_wear", "", PARAMETER_INDEX["load.right_blade.wear"], FACTOR, 1.0),
     Parameter("mu_dry_4", "s/mm", _FRICTION_AT["dry_4"], WIDE_FACTOR, 7.5),
     Parameter("mu_wet_2", "s/mm", _FRICTION_AT["wet_2"], WIDE_FACTOR, 6.0),
     Parameter("mu_wet_5", "s/mm", _FRICTION_AT["wet_5"], WIDE_FACTOR, 10.0),

@@ -11,7 +11,8 @@ from hilplant.atomic_write import write_text
 from hilplant.bench import Bench
 from hilplant.identify.three_stages import Identified
 from hilplant.measurements.measurement import Measurement, Samples
-from hilplant.models.records import Motor, unpack_parameters
+from hilplant.models.records import Motor, Parameters
+from hilplant.models.row import unpack
 
 
 class Origin(NamedTuple):
@@ -27,7 +28,7 @@ class Origin(NamedTuple):
 def write_bench(out: Path, found: Identified, origin: Origin) -> list[Path]:
     """Write OUT.yaml, OUT.motor.yaml and OUT.screen.yaml; they are said to be identified, with intervals."""
     bench = found.task.bench
-    record = unpack_parameters(found.row)
+    record = unpack(Parameters, found.row)
     stem = out.with_suffix("")
     motor, screen = stem.with_name(f"{stem.name}.motor.yaml"), stem.with_name(f"{stem.name}.screen.yaml")
     facts = _facts(found, origin)
@@ -82,7 +83,7 @@ def _motor(name: str, motor: Motor, facts: dict[str, Any]) -> dict[str, Any]:
 
 
 def _screen(bench: Bench, name: str, row: Samples, facts: dict[str, Any]) -> dict[str, Any]:
-    friction = unpack_parameters(row).load.friction._asdict()
+    friction = unpack(Parameters, row).load.friction._asdict()
     groups: dict[str, dict[str, float]] = {"dry": {}, "wet": {}, "tacky": {}}
     for key, value in friction.items():
         if (kind := key.split("_")[0]) in groups:
@@ -95,7 +96,7 @@ def _screen(bench: Bench, name: str, row: Samples, facts: dict[str, Any]) -> dic
 def _bench(bench: Bench, out: Path, parts: tuple[str, str], row: Samples) -> dict[str, Any]:
     shipped = bench.path.resolve().parent == resources.shipped("config", "benches").resolve()
     base = bench.path.name if shipped else str(bench.path.resolve())
-    load = unpack_parameters(row).load
+    load = unpack(Parameters, row).load
     sides = {}
     for side, blade, entry in zip(
         ("left", "right"), (load.left_blade, load.right_blade), bench.plant.blades or (), strict=False

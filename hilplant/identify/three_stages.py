@@ -22,7 +22,7 @@ from hilplant.identify.residuals import Problem, expected_noise
 from hilplant.identify.uncertainty import Spread, Verdict, spread, verdicts
 from hilplant.identify.validation import Comparison, compare
 from hilplant.measurements.measurement import Samples
-from hilplant.models.records import MODEL_AT
+from hilplant.models.records import PARAMETER_INDEX
 from hilplant.progress import OnProgress, ProgressReport, unseen
 
 _TABLE_5_7 = Settings()
@@ -169,5 +169,5 @@ def _starts(task: Task, outcome: Outcome) -> list[Samples]:
 
     Stage 2 may end where the force's factor of (4.50) is below 0: no friction, so no derivative says which way out.
     """
-    motor = np.array([parameter.place < MODEL_AT for parameter in task.choice.parameters])
+    motor = np.array([parameter.place < PARAMETER_INDEX["load.model"] for parameter in task.choice.parameters])
     return [outcome.values, np.where(motor, outcome.values, task.about), task.about]

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bench import Bench
-from hilplant.identify.places import STATE_PLACE
 from hilplant.identify.sequence import OFF, Stage, play
 from hilplant.measurements.measurement import Measurement, Samples
 from hilplant.models.plant import tick
+from hilplant.models.records import STATE_INDEX
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import SECOND_NS, TURN_RAD
 
@@ -98,7 +98,7 @@ def played(bench: Bench, condition: Condition, ripple: Spoiling = CLEAN, drawn: 
     state, inputs, outputs = bench.state_row.copy(), bench.input_row.copy(), np.zeros(len(OUTPUTS))
     if drawn is not None:
         angle = bench.parameters.park_switch.angle_rad + drawn.start_rad
-        state[STATE_PLACE["crank_angle_rad"]] = angle % TURN_RAD
+        state[STATE_INDEX["crank_angle_rad"]] = angle % TURN_RAD
     rows: list[Samples] = []
     made: list[Samples] = []
     inputs[INPUT_INDEX["screen"]] = condition.screen

@@ -3,8 +3,10 @@
 from typing import Any
 
 from hilplant.jit import compiled_for_threads
-from hilplant.models.plant import step, write
-from hilplant.models.records import unpack_inputs, unpack_parameters, unpack_state
+from hilplant.models.plant import step
+from hilplant.models.records import Parameters, State
+from hilplant.models.row import unpack, write
+from hilplant.signals import Inputs
 
 
 @compiled_for_threads
@@ -16,9 +18,9 @@ def simulate_columns(  # noqa: PLR0913, PLR0917
     `columns` are their places in ``signals.OUTPUTS``, `output` an array [ticks, len(columns)]. `row` is room
     for all outputs of one tick.
     """
-    parameters, state = unpack_parameters(parameter_row), unpack_state(state_row)
+    parameters, state = unpack(Parameters, parameter_row), unpack(State, state_row)
     for tick in range(input_rows.shape[0]):
-        state, outputs = step(state, unpack_inputs(input_rows[tick]), parameters, tables)
+        state, outputs = step(state, unpack(Inputs, input_rows[tick]), parameters, tables)
         write(outputs, row)
         for place in range(columns.shape[0]):
             output[tick, place] = row[columns[place]]

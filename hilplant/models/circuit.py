@@ -9,8 +9,10 @@ from typing import NamedTuple
 from hilplant.jit import compiled
 from hilplant.models.park_phase import next_phase, phase_at_rest
 from hilplant.models.park_switch import Contact
-from hilplant.models.records import Brush, Inputs, Motor, Parameters, State
+from hilplant.models.records import Brush, Motor, Parameters, State
+from hilplant.models.row import changed
 from hilplant.models.wiring import CIRCUITS, DEPRESSED, MECHANICAL, Leads, depressed, digital, mechanical
+from hilplant.signals import Inputs
 
 __all__ = ["CIRCUITS", "Connection", "connect", "next_phase", "phase_at_rest"]
 
@@ -29,6 +31,13 @@ class Connection(NamedTuple):
     terminal_53b_v: float
     terminal_53e_v: float
     terminal_31_v: float
+
+
+class Interrupted(NamedTuple):
+    """What a cut in the armature's lead changes."""
+
+    terminal_v: float
+    closed: float
 
 
 @compiled
@@ -51,15 +60,7 @@ def connect(inputs: Inputs, parameters: Parameters, contact: Contact, park_phase
 @compiled
 def interrupted(connection: Connection) -> Connection:
     """Return the connection with its armature cut out: no voltage drives it, no current flows."""
-    return Connection(
-        connection.brush,
-        0.0,
-        0.0,
-        connection.terminal_53_v,
-        connection.terminal_53b_v,
-        connection.terminal_53e_v,
-        connection.terminal_31_v,
-    )
+    return changed(connection, Interrupted(terminal_v=0.0, closed=0.0))
 
 
 @compiled

@@ -17,9 +17,10 @@ from hilplant.models import tables as channel
 from hilplant.models.friction import coefficient
 from hilplant.models.lookup import Interval, derivative, value
 from hilplant.models.polynomial import torque_over_speed
-from hilplant.models.records import Blade, Inputs, Load, Parameters
+from hilplant.models.records import Blade, Load, Parameters
 from hilplant.models.torque_network import NETWORK as BY_NETWORK
 from hilplant.models.torque_network import Tangent, reaches
+from hilplant.signals import Inputs
 from hilplant.units import TURN_RAD
 
 #: Names of the models; ``Load.model`` is the place in this list.

@@ -6,7 +6,6 @@ same, two ticks of voltage, torque, current and speed, so the network goes on fr
 """
 
 import math
-from typing import NamedTuple
 
 from hilplant.jit import compiled
 from hilplant.models.armature import Motion
@@ -20,12 +19,11 @@ from hilplant.models.narx import (
     RETURN_MARGIN,
     SLOW_BRUSH,
     STANDSTILL,
-    Sample,
     path_of,
     predict,
     within,
 )
-from hilplant.models.records import State
+from hilplant.models.records import MotorMemory, Sample, State
 from hilplant.models.shaft import Train, drive_at, turn
 
 #: Names of the models of the motor; ``Parameters.motor_model`` is the place in this list.
@@ -33,24 +31,12 @@ MOTORS = ("ode", "narx")
 NARX = MOTORS.index("narx")
 
 
-class Memory(NamedTuple):
-    """What a tick leaves to the next one; ``State`` ends with it."""
-
-    terminal_v: float
-    torque_n_m: float
-    current_a: float
-    speed_rad_s: float
-    brush: float  # NO_BRUSH where the four are not within the training
-    mode: float
-
-
-NOTHING = Memory(0.0, 0.0, 0.0, 0.0, NO_BRUSH, PHYSICAL)
-
-
 @compiled
-def move(motion: Motion, crank_angle_rad: float, load: Resistance, train: Train, state: State) -> tuple[Motion, Memory]:
+def move(
+    motion: Motion, crank_angle_rad: float, load: Resistance, train: Train, state: State
+) -> tuple[Motion, MotorMemory]:
     """Return the motion a step later and what is remembered of this one; `load` is that at the start."""
-    memory, after, accepted = NOTHING, motion, False
+    memory, after, accepted = without_network(PHYSICAL), motion, False
     if train.parameters.motor_model == NARX:
         memory, after = by_network(motion, load, train, state)
         accepted = memory.mode == NETWORK
@@ -62,32 +48,32 @@ def move(motion: Motion, crank_angle_rad: float, load: Resistance, train: Train,
 
 
 @compiled
-def by_network(motion: Motion, load: Resistance, train: Train, state: State) -> tuple[Memory, Motion]:
-    """Return the network's answer; or in `Memory.mode` why it has none."""
+def by_network(motion: Motion, load: Resistance, train: Train, state: State) -> tuple[MotorMemory, Motion]:
+    """Return the network's answer; or in `MotorMemory.mode` why it has none."""
     networks, brush = train.parameters.networks, brush_of(train)
     path = path_of(networks, brush if brush != NO_BRUSH else SLOW_BRUSH)
-    before = Sample(state.last_terminal_v, state.last_torque_n_m, state.last_current_a, state.last_speed_rad_s)
+    before = state.memory.last
     speed = motion.speed / train.parameters.motor.gear_ratio
-    now = Sample(train.connection.terminal_v, state.last_torque_n_m, motion.current, speed)
+    now = Sample(train.connection.terminal_v, state.memory.last.torque_n_m, motion.current, speed)
     if brush == NO_BRUSH or speed < networks[path + 4]:
         return without_network(STANDSTILL), motion
-    if state.last_brush != brush:
-        outside = state.last_brush == NO_BRUSH and state.motor_mode == OUTSIDE
+    if state.memory.brush != brush:
+        outside = state.memory.brush == NO_BRUSH and state.memory.mode == OUTSIDE
         return without_network(OUTSIDE if outside else STANDSTILL), motion
-    margin = 0.0 if state.motor_mode == NETWORK else RETURN_MARGIN
+    margin = 0.0 if state.memory.mode == NETWORK else RETURN_MARGIN
     if margin > 0.0 and not within(networks, path, before, margin):
         return without_network(OUTSIDE), motion
     now, after = coupled(now, before, load, train, path)
     reached = Sample(now.terminal_v, now.torque_n_m, after.current, after.speed / train.parameters.motor.gear_ratio)
     if not (within(networks, path, now, margin) and within(networks, path, reached, 0.0)):
         return without_network(OUTSIDE), motion
-    return Memory(now.terminal_v, now.torque_n_m, now.current_a, now.speed_rad_s, brush, NETWORK), after
+    return MotorMemory(now, brush, NETWORK), after
 
 
 @compiled
-def without_network(mode: float) -> Memory:
+def without_network(mode: float) -> MotorMemory:
     """Return the memory that the network cannot go on from."""
-    return Memory(0.0, 0.0, 0.0, 0.0, NO_BRUSH, mode)
+    return MotorMemory(Sample(0.0, 0.0, 0.0, 0.0), brush=NO_BRUSH, mode=mode)
 
 
 @compiled
@@ -128,7 +114,7 @@ def brush_of(train: Train) -> float:
 
 
 @compiled
-def remembered(before: Motion, after: Motion, mode: float, train: Train) -> Memory:
+def remembered(before: Motion, after: Motion, mode: float, train: Train) -> MotorMemory:
     """Return what a tick of the physical model leaves to the network, with the mean torque through the gear.
 
     That torque is what the integrals of (3.30) and (3.31) over the tick leave for it.
@@ -140,7 +126,7 @@ def remembered(before: Motion, after: Motion, mode: float, train: Train) -> Memo
     sample = Sample(train.connection.terminal_v, torque, before.current, before.speed / ratio)
     if not within(train.parameters.networks, path_of(train.parameters.networks, brush), sample, 0.0):
         brush = NO_BRUSH
-    return Memory(sample.terminal_v, torque, before.current, sample.speed_rad_s, brush, mode)
+    return MotorMemory(sample, brush, mode)
 
 
 @compiled

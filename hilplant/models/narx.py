@@ -15,12 +15,13 @@ import math
 from typing import Any, NamedTuple
 
 from hilplant.jit import compiled
+from hilplant.models.records import Sample
 
 #: Numbers before the first neuron of a path, and numbers of a neuron.
 HEAD = 11
 NEURON = 11
 
-#: Brushes, as `Memory.brush`; NO_BRUSH: there is nothing that the network could go on from.
+#: Brushes, as `MotorMemory.brush`; NO_BRUSH: there is nothing that the network could go on from.
 NO_BRUSH, SLOW_BRUSH, FAST_BRUSH = 0.0, 1.0, 2.0
 
 #: Who moves the motor, as ``signals.IN_CHARGE``: the physical model of a bench without network; the network; the
@@ -34,15 +35,6 @@ RETURN_MARGIN = 0.02
 
 #: Torques [N m] that a tick of rounding leaves behind are no reason to distrust a network whose range begins at 0.
 TORQUE_ROUNDING_N_M = 1e-6
-
-
-class Sample(NamedTuple):
-    """What the network takes of one tick: voltage and torque during it, current and speed at its start."""
-
-    terminal_v: float
-    torque_n_m: float  # through the gear, at the crank, positive when it opposes positive speed
-    current_a: float
-    speed_rad_s: float  # of the crank
 
 
 class Prediction(NamedTuple):

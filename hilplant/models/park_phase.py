@@ -2,8 +2,9 @@
 
 from hilplant.jit import compiled
 from hilplant.models.park_switch import Contact, turned_back
-from hilplant.models.records import Inputs, ParkSwitch
+from hilplant.models.records import ParkSwitch
 from hilplant.models.wiring import DEPRESSED, PARKED, TURNING_BACK, WIPING
+from hilplant.signals import Inputs
 
 
 @compiled

@@ -10,19 +10,13 @@ from hilplant.models.load import NETWORK, Crank, Resistance, left_pressing, resi
 from hilplant.models.lookup import derivative, find, value, within_turn
 from hilplant.models.motor_choice import move
 from hilplant.models.park_switch import contact_now
-from hilplant.models.records import (
-    Inputs,
-    Outputs,
-    Parameters,
-    State,
-    unpack_inputs,
-    unpack_parameters,
-    unpack_state,
-)
+from hilplant.models.records import Parameters, State
+from hilplant.models.row import unpack, write
 from hilplant.models.shaft import Train, load_torque
 from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
 from hilplant.models.torque_network import NETWORK as BY_NETWORK
 from hilplant.models.torque_network import NO_TANGENT, PHYSICAL, load_in_charge, network_tangent
+from hilplant.signals import Inputs, Outputs
 
 
 @compiled
@@ -63,20 +57,15 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     outputs = measured(motion, crank, load, contact.shown, state.guard, train, memory.mode)
     # 6 guard
     following = State(
-        without_denormals(after.current),
-        without_denormals(after.speed),
-        within_turn(angle + after.turned / parameters.motor.gear_ratio),
-        contact.closed,
-        contact.bounce_left,
-        state.guard,
-        phase,
-        memory.terminal_v,
-        memory.torque_n_m,
-        memory.current_a,
-        memory.speed_rad_s,
-        memory.brush,
-        memory.mode,
-        load_mode,
+        current_a=without_denormals(after.current),
+        motor_speed_rad_s=without_denormals(after.speed),
+        crank_angle_rad=within_turn(angle + after.turned / parameters.motor.gear_ratio),
+        park_contact=contact.closed,
+        bounce_left=contact.bounce_left,
+        guard=state.guard,
+        park_phase=phase,
+        memory=memory,
+        load_mode=load_mode,
     )
     return hold_if_wrong(following, angle), outputs
 
@@ -133,8 +122,8 @@ def without_denormals(value: float) -> float:
 @compiled
 def tick(state_row: Any, input_row: Any, parameter_row: Any, tables: Any, output_row: Any) -> None:
     """Take one step on packed rows of floats; `state_row` moves on, `output_row` is filled. For the server."""
-    parameters = unpack_parameters(parameter_row)
-    state, outputs = step(unpack_state(state_row), unpack_inputs(input_row), parameters, tables)
+    parameters = unpack(Parameters, parameter_row)
+    state, outputs = step(unpack(State, state_row), unpack(Inputs, input_row), parameters, tables)
     write(state, state_row)
     write(outputs, output_row)
 
@@ -142,16 +131,9 @@ def tick(state_row: Any, input_row: Any, parameter_row: Any, tables: Any, output
 @compiled
 def simulate_rows(state_row: Any, input_rows: Any, parameter_row: Any, tables: Any, output_rows: Any) -> None:
     """Take one step for each row of inputs, and leave its outputs in the same row of `output_rows`."""
-    parameters = unpack_parameters(parameter_row)
-    state = unpack_state(state_row)
+    parameters = unpack(Parameters, parameter_row)
+    state = unpack(State, state_row)
     for index in range(input_rows.shape[0]):
-        state, outputs = step(state, unpack_inputs(input_rows[index]), parameters, tables)
+        state, outputs = step(state, unpack(Inputs, input_rows[index]), parameters, tables)
         write(outputs, output_rows[index])
     write(state, state_row)
-
-
-@compiled
-def write(record: tuple[float, ...], row: Any) -> None:
-    """Write a record of floats into its row."""
-    for index, number in enumerate(record):
-        row[index] = number

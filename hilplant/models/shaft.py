@@ -16,8 +16,9 @@ from hilplant.models.gear import held_torque, through_gear
 from hilplant.models.load import REDUCED, Crank, Resistance, by_speed, resist_as
 from hilplant.models.lookup import find, within_turn
 from hilplant.models.motor import Hold, advance, direction_of, half_period, slide, stand, stick
-from hilplant.models.records import Inputs, Parameters
+from hilplant.models.records import Parameters
 from hilplant.models.torque_network import Tangent
+from hilplant.signals import Inputs
 
 #: In one stretch the speed changes by this part of itself at most ...
 CHANGE = 0.25

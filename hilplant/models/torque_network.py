@@ -13,7 +13,7 @@ import math
 from typing import Any, NamedTuple
 
 from hilplant.jit import compiled
-from hilplant.models.records import Inputs
+from hilplant.signals import Inputs
 
 #: Places of the head: neurons, lowest and highest speed of the crank in the training [rad/s], what must be left of
 #: this range at both ends before the network is trusted again [rad/s], what the dry and the wet torque begin with.

@@ -1,12 +1,23 @@
 """Torques at many angles and speeds at once, by the physical load and by its network: for training and for checks."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from hilplant.jit import compiled
 from hilplant.models.load import Crank, reduced
 from hilplant.models.lookup import derivative, find, value
-from hilplant.models.records import Inputs, Load
+from hilplant.models.records import Load
+from hilplant.models.row import changed
 from hilplant.models.torque_network import network_tangent
+from hilplant.signals import Inputs
+
+#: Neither wind nor brake, blades and arms as they are.
+UNDISTURBED = Inputs()
+
+
+class Wetness(NamedTuple):
+    """The only input that matters here."""
+
+    screen: float
 
 
 @compiled
@@ -15,7 +26,7 @@ def physical_torques(tables: Any, load: Load, wetness: float, states: Any, torqu
 
     `states` is an array [m, 2] of crank angles in [0, 2 pi) and positive speeds [rad/s].
     """
-    inputs = Inputs(0.0, 0.0, 0.0, wetness, 0.0, 0.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0)
+    inputs = changed(UNDISTURBED, Wetness(wetness))
     for row in range(states.shape[0]):
         angle, speed = states[row, 0], states[row, 1]
         found = reduced(Crank(tables, find(tables, angle), angle, speed), load, inputs)

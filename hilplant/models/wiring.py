@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from hilplant.jit import compiled
 from hilplant.models.park_switch import Contact
-from hilplant.models.records import Inputs
+from hilplant.signals import Inputs
 
 #: The circuits; `ParkSwitch.circuit` is the place of one in this list.
 CIRCUITS = ("digital", "mechanical", "depressed")

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from hilplant.bench import Bench
-from hilplant.models.records import pack
+from hilplant.models.row import pack
 from hilplant.perf.c_step import Rows, SimulateRows, compile_batch
 from hilplant.perf.minute import bench_with, mixed_minute
 from hilplant.perf.results import Goal, Measured, Row

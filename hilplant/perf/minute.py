@@ -5,7 +5,7 @@ from dataclasses import replace
 from hilplant.bench import Bench, load_bench
 from hilplant.models.load import LOADS
 from hilplant.models.polynomial import C1, C2
-from hilplant.models.records import pack
+from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX
 from hilplant.simulation.scenario import Entry, Scenario
 

@@ -12,7 +12,8 @@ from hilplant.bench import Bench, load_bench
 from hilplant.bench.load_files import TorqueFile
 from hilplant.bench.plant_description import NetworkLoad
 from hilplant.models.load import LOADS
-from hilplant.models.records import MODEL_AT, pack
+from hilplant.models.records import PARAMETER_INDEX
+from hilplant.models.row import pack
 from hilplant.plots.training import plot_errors
 from hilplant.progress import OnProgress, unseen
 from hilplant.reports.page import TrainingReport, markdown_table, write_page
@@ -76,7 +77,7 @@ def _with_network(bench: Bench, content: Figures) -> Bench:
     file = TorqueFile.model_validate(content | {"content_hash": "not written yet"})
     parameters = bench.parameters._replace(networks=file.numbers())
     row = pack(parameters)
-    row[MODEL_AT] = LOADS.index("network")
+    row[PARAMETER_INDEX["load.model"]] = LOADS.index("network")
     load = NetworkLoad(model="network", file="torque.yaml")
     return replace(
         bench, parameters=parameters, parameter_row=row, plant=replace(bench.plant, parameters=parameters, load=load)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from hilplant.models.batch import simulate_columns
 from hilplant.models.load import REDUCED
-from hilplant.models.records import MODEL_AT, PARAMETER_COUNT, POINTS_AT, State
+from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX
 from hilplant.models.tables import channels as channel_count
 from hilplant.signals import INPUTS, OUTPUT_INDEX, OUTPUTS
 
@@ -98,8 +98,8 @@ def _check(  # noqa: PLR0913, PLR0917
     sets, ticks = len(parameters), inputs.shape[1]
     knots, channels = tables.shape[1:3]
     wanted = (
-        ("state_rows", states, (sets, len(State._fields))),
-        ("parameter_rows", parameters, (sets, max(PARAMETER_COUNT, parameters.shape[-1]))),
+        ("state_rows", states, (sets, len(STATE_INDEX))),
+        ("parameter_rows", parameters, (sets, max(len(PARAMETER_INDEX), parameters.shape[-1]))),
         ("input_rows", inputs, (len(inputs) if len(inputs) == 1 else sets, ticks, len(INPUTS))),
         ("tables", tables, (len(tables) if len(tables) == 1 else sets, knots, channels, 2)),
         ("output", output, (sets, ticks, len(places))),
@@ -111,7 +111,7 @@ def _check(  # noqa: PLR0913, PLR0917
             raise ValueError(f"{name} is not a contiguous array of 64-bit floats")
     if len(places) and not (places.min() >= 0 and places.max() < len(OUTPUTS)):
         raise ValueError(f"columns are places from 0 to {len(OUTPUTS) - 1}")
-    points = parameters[:, POINTS_AT].max(initial=1.0)
-    reduced = parameters[:, MODEL_AT] >= REDUCED
+    points = parameters[:, PARAMETER_INDEX["load.points"]].max(initial=1.0)
+    reduced = parameters[:, PARAMETER_INDEX["load.model"]] >= REDUCED
     if reduced.any() and channels < channel_count(int(points)):
         raise ValueError(f"tables have {channels} channels, not the {channel_count(int(points))} for {points:g} points")

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from hilplant.bench.assembly import Bench
 from hilplant.models.load import Crank, resist
 from hilplant.models.lookup import find
-from hilplant.models.records import Inputs, unpack_inputs
-from hilplant.signals import SCREENS
+from hilplant.models.row import unpack
+from hilplant.signals import SCREENS, Inputs
 
 Floats = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ def crank_torque(bench: Bench, crank_rad: Floats, crank_speed_rad_s: float, cond
 
     The speed is constant, so the inertia shows only where it changes with the angle, M'(angle) w^2/2.
     """
-    given: Inputs = unpack_inputs(bench.input_row)
+    given: Inputs = unpack(Inputs, bench.input_row)
     inputs = given._replace(
         screen=conditions.wetness,
         vehicle_speed_m_s=conditions.vehicle_speed_m_s,

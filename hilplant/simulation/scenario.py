@@ -16,9 +16,10 @@ from hilplant.checked_yaml.checked import Checked, NotNegative, Positive
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.checked_yaml.reading import Reading
 from hilplant.checked_yaml.yaml_reader import Document, Location
+from hilplant.declaration import Signal
 from hilplant.ecu.stalk import Turn
 from hilplant.failure import Failure
-from hilplant.signals import INPUT_INDEX, INPUTS, Signal
+from hilplant.signals import INPUT_INDEX, INPUTS
 from hilplant.simulation.scenario_sections import read_expectations, read_stalk
 from hilplant.units import SECOND_NS
 from hilplant.verdicts.binding import Placed

@@ -13,7 +13,8 @@ from scipy.optimize import least_squares
 
 from hilplant.bench.assembly import Bench, initial_state
 from hilplant.models.plant import simulate_rows
-from hilplant.models.records import Parameters, pack
+from hilplant.models.records import Parameters
+from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 
 Floats = NDArray[np.float64]

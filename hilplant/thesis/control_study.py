@@ -16,7 +16,7 @@ from hilplant.control.fuzzy_sets import gain_table
 from hilplant.control.records import Controller
 from hilplant.failure import Failure
 from hilplant.models.load import LOADS, REDUCED
-from hilplant.models.records import pack
+from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX
 from hilplant.thesis.control_estimation import CHANGES, OFF, Case, estimated, estimator_table, full_range
 from hilplant.thesis.control_network import Floats, record, trained_paths

@@ -16,7 +16,8 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
 from hilplant.models import tables as channel
-from hilplant.models.records import Blade, Brush, Friction, Inputs, Parameters
+from hilplant.models.records import Blade, Brush, Friction, Parameters
+from hilplant.signals import Inputs
 from hilplant.units import TURN_RAD
 
 Floats = NDArray[np.float64]

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.models.plant import simulate_rows
-from hilplant.models.records import Parameters, State, pack
+from hilplant.models.records import Parameters, State
+from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS
 from hilplant.thesis.reference import Channels, Reference
 
@@ -100,7 +101,7 @@ class Errors:
 def run_step(parameters: Parameters, tables: Floats, input_rows: Floats, state: State | None = None) -> Floats:
     """Return the outputs of the plant at each tick, from rest at park if nothing else is said."""
     outputs = np.empty((len(input_rows), len(OUTPUTS)))
-    start = pack(state or State(0.0, 0.0, 0.0, 1.0, 0.0, 0.0))
+    start = pack(state or State(park_contact=1.0))
     simulate_rows(start, input_rows, pack(parameters), tables, outputs)
     return outputs
 

@@ -11,7 +11,7 @@ from hilplant.bench import Bench, load_bench
 from hilplant.models.load import LOADS
 from hilplant.models.narx import NETWORK
 from hilplant.models.plant import simulate_rows
-from hilplant.models.records import pack
+from hilplant.models.row import pack
 from hilplant.perf.c_step import Rows, compile_networks
 from hilplant.perf.networks_cost import calm_minute
 from hilplant.perf.samples import alternate

@@ -6,7 +6,7 @@ import numpy as np
 
 from hilplant.bench import Bench
 from hilplant.models.narx import NETWORK
-from hilplant.models.records import pack
+from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX
 from hilplant.simulation.batch import simulate_batch
 from hilplant.train.motor_data import Floats, excitation

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from hilplant.bench import Bench
 from hilplant.models.load import REDUCED
 from hilplant.models.plant import simulate_rows
-from hilplant.models.records import Brush, Parameters, pack
+from hilplant.models.records import Brush, Parameters
+from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import TURN_RAD
 

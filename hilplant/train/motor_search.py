@@ -16,8 +16,9 @@ from hilplant.bench import Bench
 from hilplant.jit import compiled_for_threads
 from hilplant.models.narx import NETWORK
 from hilplant.models.plant import step
-from hilplant.models.records import State, pack, unpack_inputs, unpack_parameters, unpack_state
-from hilplant.signals import INPUT_INDEX
+from hilplant.models.records import Parameters, State
+from hilplant.models.row import pack, unpack
+from hilplant.signals import INPUT_INDEX, Inputs
 from hilplant.train.motor_data import Floats
 from hilplant.units import TURN_RAD
 
@@ -47,16 +48,16 @@ def differences(state_row: Any, input_rows: Any, parameter_rows: Any, tables: An
     `found` takes the largest difference in current and its tick, the same in motor speed, both sums of squares, and
     the ticks in which the network was in charge.
     """
-    state = unpack_state(state_row)
+    state = unpack(State, state_row)
     for place in range(7):
         found[place] = 0.0
     for tick in range(input_rows.shape[0]):
-        inputs, before, physical = unpack_inputs(input_rows[tick]), state, state
+        inputs, before, physical = unpack(Inputs, input_rows[tick]), state, state
         for which in range(2):
-            state, _ = step(before, inputs, unpack_parameters(parameter_rows[which]), tables)
+            state, _ = step(before, inputs, unpack(Parameters, parameter_rows[which]), tables)
             if which == 0:
                 physical = state
-        if state.motor_mode == NETWORK:
+        if state.memory.mode == NETWORK:
             current, speed = state.current_a - physical.current_a, state.motor_speed_rad_s - physical.motor_speed_rad_s
             if not abs(current) <= found[0]:
                 found[0], found[1] = abs(current), tick
@@ -71,7 +72,11 @@ def wild_scenario(bench: Bench, random: np.random.Generator) -> tuple[Floats, Fl
     """Return a state to begin with, and rows of inputs that nobody would wish a wiper."""
     speed, current = random.uniform(-120.0, 600.0), random.uniform(-15.0, 20.0)
     at_rest = random.random() < 0.3
-    state = State(0.0 if at_rest else current, 0.0 if at_rest else speed, random.uniform(0.0, TURN_RAD), 0.0, 0.0, 0.0)
+    state = State(
+        current_a=0.0 if at_rest else current,
+        motor_speed_rad_s=0.0 if at_rest else speed,
+        crank_angle_rad=random.uniform(0.0, TURN_RAD),
+    )
     rows = np.tile(bench.input_row, (TICKS, 1))
     most_v, most_n_m = random.choice([14.0, 18.0, 25.0, 30.0]), random.choice([0.0, 10.0, 40.0, 500.0])
     drawn: dict[str, Callable[[], float]] = {

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from hilplant.bench.assembly import Bench
 from hilplant.models import torque_samples as samples
 from hilplant.models.load import LOADS
-from hilplant.models.records import MODEL_AT, State
+from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX
 from hilplant.progress import OnProgress, ProgressReport, unseen
 from hilplant.signals import IN_CHARGE, INPUT_INDEX
 from hilplant.simulation.batch import simulate_batch
@@ -107,11 +107,11 @@ def _run(bench: Bench, inputs: Floats, seeds: list[int], load: str) -> Floats:
     for seed in seeds:
         angle, speed = random_state(seed)
         row = bench.state_row.copy()
-        row[State._fields.index("crank_angle_rad")] = angle
-        row[State._fields.index("motor_speed_rad_s")] = speed
+        row[STATE_INDEX["crank_angle_rad"]] = angle
+        row[STATE_INDEX["motor_speed_rad_s"]] = speed
         states.append(row)
     parameters = np.tile(bench.parameter_row, (len(seeds), 1))
-    parameters[:, MODEL_AT] = LOADS.index(load)
+    parameters[:, PARAMETER_INDEX["load.model"]] = LOADS.index(load)
     return simulate_batch(np.array(states), inputs, parameters, bench.tables, COLUMNS)
 
 

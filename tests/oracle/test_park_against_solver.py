@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from hilplant.models.plant import simulate_rows
-from hilplant.models.records import Arm, Brush, Inputs, Load, Motor, Outputs, Parameters, ParkSwitch, State, pack
+from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.models.row import pack
 from hilplant.models.tables import POINTS
-from hilplant.signals import OUTPUTS
+from hilplant.signals import OUTPUTS, Inputs, Outputs
 from hilplant.units import TURN_RAD
 
 TABLE_5_9 = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2), 1.983e-5, 1.582e-4, 0.0, 63.0)

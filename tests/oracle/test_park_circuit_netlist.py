@@ -11,7 +11,8 @@ import pytest
 
 from hilplant.models.circuit import CIRCUITS, connect
 from hilplant.models.park_switch import Contact
-from hilplant.models.records import Arm, Brush, Inputs, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.signals import Inputs
 
 Wires = tuple[tuple[str, str], ...]
 

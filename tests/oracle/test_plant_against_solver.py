@@ -13,7 +13,8 @@ import yaml
 from numpy.typing import NDArray
 
 from hilplant.models.plant import tick
-from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State, pack
+from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 from hilplant.thesis.solver import Errors, Rows, compare
 

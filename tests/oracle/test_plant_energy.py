@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from hilplant.models.plant import simulate_rows
-from hilplant.models.records import Arm, Brush, Inputs, Load, Motor, Parameters, ParkSwitch, State, pack
-from hilplant.signals import OUTPUT_INDEX, OUTPUTS
+from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.models.row import pack
+from hilplant.signals import OUTPUT_INDEX, OUTPUTS, Inputs
 
 MOTOR = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2), 1.983e-5, 1.582e-4, 0.045, 63.0)
 STEP_S = 1e-5

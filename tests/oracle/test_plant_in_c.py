@@ -10,7 +10,8 @@ from support.closed_form import ClosedFormWiper
 
 from hilplant.models.circuit import CIRCUITS
 from hilplant.models.plant import simulate_rows
-from hilplant.models.records import Arm, Blade, Brush, Friction, Load, Motor, Parameters, ParkSwitch, State, pack
+from hilplant.models.records import STATE_INDEX, Arm, Blade, Brush, Friction, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.models.row import pack
 from hilplant.perf.c_step import SimulateRows, compile_batch, compile_step
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS
 from hilplant.simulation.batch import simulate_batch
@@ -133,7 +134,7 @@ def test_the_random_scenarios_reach_every_branch(step_in_c: SimulateRows) -> Non
         for tick in range(len(inputs)):
             row = slice(tick, tick + 1)
             step_in_c(state, inputs[row], pack(plant), TABLES[int(plant.load.points)], outputs[row])
-            phases.add(float(state[State._fields.index("park_phase")]))
+            phases.add(float(state[STATE_INDEX["park_phase"]]))
         seen.append(outputs)
     column = {name: np.concatenate([rows[:, place] for rows in seen]) for name, place in OUTPUT_INDEX.items()}
     assert phases == {0.0, 1.0, 2.0}

@@ -8,20 +8,9 @@ from support.closed_form import ClosedFormWiper
 
 from hilplant.models import tables as channel
 from hilplant.models.plant import simulate_rows
-from hilplant.models.records import (
-    Arm,
-    Blade,
-    Brush,
-    Friction,
-    Inputs,
-    Load,
-    Motor,
-    Parameters,
-    ParkSwitch,
-    State,
-    pack,
-)
-from hilplant.signals import OUTPUT_INDEX, OUTPUTS
+from hilplant.models.records import Arm, Blade, Brush, Friction, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.models.row import pack
+from hilplant.signals import OUTPUT_INDEX, OUTPUTS, Inputs
 
 MOTOR = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2), 1.983e-5, 1.582e-4, 0.0, 63.0)
 STIFF = Motor(Brush(8.0, 9e-5, 9.55e-4), Brush(3.9, 1.2e-5, 6.88e-4), 2e-9, 2e-3, 0.0, 1.0)

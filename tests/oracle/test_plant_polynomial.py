@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from hilplant.models.load import LOADS, by_speed
 from hilplant.models.lookup import derivative, find, value
 from hilplant.models.polynomial import C1, C2, forward_shape, reverse_shape
-from hilplant.models.records import NO_NETWORKS, Inputs, Load
+from hilplant.models.records import NO_NETWORKS, Load
+from hilplant.signals import Inputs
 
 #: Coefficients as printed, highest power first.
 F = ("-0.19224", "0.021769", "-0.15435", "0.077812", "0.68626")

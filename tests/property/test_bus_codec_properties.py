@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from hilplant.bus.bits import type_range
 from hilplant.bus.codec import SignalMapping, Timing, received_message, sent_message
-from hilplant.signals import Signal
+from hilplant.declaration import Signal
 
 SCALES = st.sampled_from([1, 1.0, 0.5, 0.1, 0.001, 2, 3, -1, -0.1, 0.25, 1e-4])
 OFFSETS = st.sampled_from([0, 0.0, -40, 0.5, 100, -273.15])

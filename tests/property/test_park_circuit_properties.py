@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from hilplant.models.plant import simulate_rows, tick
-from hilplant.models.records import Arm, Brush, Inputs, Load, Motor, Outputs, Parameters, ParkSwitch, State, pack
+from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.models.row import pack
 from hilplant.models.tables import POINTS
-from hilplant.signals import OUTPUTS
+from hilplant.signals import OUTPUTS, Inputs, Outputs
 from hilplant.units import TURN_RAD
 
 MOTOR = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2), 1.983e-5, 1.582e-4, 0.045, 63.0)

@@ -13,7 +13,7 @@ from hilplant.bench import load_bench
 from hilplant.bench.motor_network_file import MotorNetworkFile
 from hilplant.models.narx import NETWORK, OUTSIDE, STANDSTILL
 from hilplant.models.plant import simulate_rows
-from hilplant.models.records import pack
+from hilplant.models.row import pack
 from hilplant.resources import shipped
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 from hilplant.train.motor_data import physical

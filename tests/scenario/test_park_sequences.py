@@ -15,7 +15,8 @@ import pytest
 from numpy.typing import NDArray
 
 from hilplant import Bench, Result, load_bench, simulate
-from hilplant.models.records import Load, pack
+from hilplant.models.records import Load
+from hilplant.models.row import pack
 from hilplant.simulation.scenario import Entry, load_scenario
 from hilplant.units import TURN_RAD
 

@@ -13,7 +13,8 @@ from hilplant.bench.load_files import TorqueFile
 from hilplant.models.circuit import CIRCUITS
 from hilplant.models.load import LOADS
 from hilplant.models.plant import simulate_rows
-from hilplant.models.records import MODEL_AT, State, pack
+from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX
+from hilplant.models.row import pack
 from hilplant.signals import IN_CHARGE, INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 
 Floats = NDArray[np.float64]
@@ -40,7 +41,7 @@ def both(bench: Bench, inputs: Floats) -> tuple[Callable[[str], Floats], Callabl
     runs = []
     for load in ("network", "reduced"):
         parameters, outputs = bench.parameter_row.copy(), np.empty((len(inputs), len(OUTPUTS)))
-        parameters[MODEL_AT] = LOADS.index(load)
+        parameters[PARAMETER_INDEX["load.model"]] = LOADS.index(load)
         state = initial_state(bench.parameters, bench.initial)
         simulate_rows(state, inputs, parameters, bench.tables, outputs)
         runs.append(outputs)
@@ -105,7 +106,7 @@ def test_the_torque_that_is_shown_is_within_the_promised_bound_of_the_physical_o
     inputs = wiping(bench)
     state = initial_state(bench.parameters, bench.initial)
     shown, reduced = bench.parameter_row, bench.parameter_row.copy()
-    reduced[MODEL_AT] = LOADS.index("reduced")
+    reduced[PARAMETER_INDEX["load.model"]] = LOADS.index("reduced")
     row, outputs, checked = np.empty((1, len(OUTPUTS))), np.empty((1, len(OUTPUTS))), 0
     for tick in range(0, 4000, 10):
         simulate_rows(state.copy(), inputs[tick : tick + 1], shown, bench.tables, row)
@@ -132,7 +133,7 @@ def test_speed_hands_over_at_the_ends_of_the_training_with_hysteresis(bench: Ben
     }  # fmt: skip
     for (speed, before), wanted in expected.items():
         state = initial_state(bench.parameters, bench.initial | {"motor_speed_rad_s": speed * ratio})
-        state[State._fields.index("load_mode")] = before
+        state[STATE_INDEX["load_mode"]] = before
         outputs = np.empty((1, len(OUTPUTS)))
         simulate_rows(state, inputs, bench.parameter_row, bench.tables, outputs)
         assert outputs[0, OUTPUT_INDEX["load_mode"]] == wanted, (speed, before)

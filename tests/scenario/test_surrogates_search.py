@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from hilplant.bench import load_bench
 from hilplant.bench.load_files import TorqueFile
-from hilplant.models.records import pack
+from hilplant.models.row import pack
 from hilplant.train.torque_search import Found, Range, search
 
 

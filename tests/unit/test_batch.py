@@ -9,9 +9,7 @@ from support.closed_form import ClosedFormWiper
 
 from hilplant.models.plant import simulate_rows
 from hilplant.models.records import (
-    MODEL_AT,
-    PARAMETER_COUNT,
-    POINTS_AT,
+    PARAMETER_INDEX,
     Arm,
     Blade,
     Brush,
@@ -21,8 +19,8 @@ from hilplant.models.records import (
     Parameters,
     ParkSwitch,
     State,
-    pack,
 )
+from hilplant.models.row import pack
 from hilplant.signals import OUTPUT_INDEX, OUTPUTS
 from hilplant.simulation.batch import simulate_batch
 from hilplant.thesis.solver import Rows
@@ -75,7 +73,11 @@ def test_no_sets_are_no_error() -> None:
 
 def test_the_named_places_are_where_packing_puts_them() -> None:
     row = plant(1.0, 1e-5)
-    assert (len(row), row[MODEL_AT], row[POINTS_AT]) == (PARAMETER_COUNT, 2.0, 1.0)
+    assert (len(row), row[PARAMETER_INDEX["load.model"]], row[PARAMETER_INDEX["load.points"]]) == (
+        len(PARAMETER_INDEX),
+        2.0,
+        1.0,
+    )
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,8 @@ from hilplant.bench import Bench, check_bench
 from hilplant.models.circuit import CIRCUITS
 from hilplant.models.friction import coefficient
 from hilplant.models.load import LOADS
-from hilplant.models.records import pack, unpack_parameters, unpack_state
+from hilplant.models.records import Parameters, State
+from hilplant.models.row import pack, unpack
 from hilplant.models.tables import LEFT_LIFT, RIGHT_LIFT, channels
 from hilplant.resources import named, shipped
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUTS, PUBLISHED, PUBLISHED_INDEX
@@ -66,7 +67,7 @@ def test_rows_and_tables_are_what_compiled_code_takes(tmp_path: Path, points: in
     path = tmp_path / "bench.yaml"
     path.write_text(f"extends: default.yaml\nname: x\nplant: {{load: {{model: reduced, points: {points}}}}}\n")
     bench = load_bench(path)
-    parameters, state = pack(unpack_parameters(bench.parameter_row)), pack(unpack_state(bench.state_row))
+    parameters, state = pack(unpack(Parameters, bench.parameter_row)), pack(unpack(State, bench.state_row))
     assert (len(bench.parameter_row), len(bench.state_row)) == (len(parameters), len(state))
     assert parameters.tolist() == pack(bench.parameters).tolist()
     for row in (bench.parameter_row, bench.state_row, bench.input_row):

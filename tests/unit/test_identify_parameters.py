@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from hilplant.bench import load_bench
+from hilplant.declaration import declared
 from hilplant.failure import Failure
 from hilplant.identify.parameters import SEVENTEEN, chosen, search_space
-from hilplant.identify.places import PLACE, STATE_PLACE
-from hilplant.models.records import State, unpack_parameters
+from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX, Parameters, State
+from hilplant.models.row import unpack
 
 
 @pytest.fixture(scope="module")
@@ -17,12 +18,12 @@ def bench():
 
 def test_places_are_those_of_the_packed_row(bench):
     """Every element that has a name in the record is found at its place in the row, however the record is nested."""
-    for name, place in PLACE.items():
+    for name, place in PARAMETER_INDEX.items():
         record = bench.parameters
         for part in name.split("."):
             record = getattr(record, part)
         assert bench.parameter_row[place] == record, name
-    assert list(STATE_PLACE) == list(State._fields)
+    assert list(STATE_INDEX) == [signal.name for signal in declared(State)]
 
 
 def test_the_seventeen_have_the_values_of_table_5_9(bench):
@@ -36,7 +37,7 @@ def test_the_seventeen_have_the_values_of_table_5_9(bench):
 def test_linked_coefficients_follow_and_nothing_else_moves(bench):
     choice = chosen(bench.parameter_row)
     moved = choice.values * 1.5
-    friction = unpack_parameters(choice.rows(moved[np.newaxis])[0]).load
+    friction = unpack(Parameters, choice.rows(moved[np.newaxis])[0]).load
     assert friction.friction.dry_4 == pytest.approx(10.0 * 1.5 * 1.996)
     assert friction.friction.wet_2 == pytest.approx(10.0 * 1.5 * 0.4454)
     assert friction.friction.wet_5 == pytest.approx(10.0 * 1.5 * 0.6756)
@@ -50,7 +51,7 @@ def test_a_linked_coefficient_that_is_looked_for_itself_is_not_moved_by_the_othe
     values = choice.values
     values[choice.names.index("mu_dry_3")] *= 2.0
     row = choice.rows(values[np.newaxis])[0]
-    assert unpack_parameters(row).load.friction.dry_4 == bench.parameters.load.friction.dry_4
+    assert unpack(Parameters, row).load.friction.dry_4 == bench.parameters.load.friction.dry_4
 
 
 def test_held_parameters_are_not_looked_for(bench):

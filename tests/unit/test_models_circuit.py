@@ -12,7 +12,8 @@ import pytest
 
 from hilplant.models.circuit import CIRCUITS, Connection, connect, next_phase, phase_at_rest
 from hilplant.models.park_switch import Contact, turned_back
-from hilplant.models.records import Arm, Brush, Inputs, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.signals import Inputs
 
 MOTOR = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2), 1.983e-5, 1.582e-4, 0.0, 63.0)
 SWITCH = ParkSwitch(angle_rad=0.05, half_window_rad=0.12, hysteresis_rad=0.01, bounce_ticks=0.0, reverse_angle_rad=0.2)

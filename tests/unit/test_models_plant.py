@@ -9,22 +9,9 @@ from numpy.typing import NDArray
 
 from hilplant.models import tables as channel
 from hilplant.models.plant import simulate_rows, tick
-from hilplant.models.records import (
-    Arm,
-    Brush,
-    Inputs,
-    Load,
-    Motor,
-    Outputs,
-    Parameters,
-    ParkSwitch,
-    State,
-    pack,
-    unpack_inputs,
-    unpack_parameters,
-    unpack_state,
-)
-from hilplant.signals import INPUTS, OUTPUTS
+from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.models.row import pack, unpack
+from hilplant.signals import INPUTS, OUTPUTS, Inputs, Outputs
 
 MOTOR = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2), 1.983e-5, 1.582e-4, 0.045, 63.0)
 SWITCH = ParkSwitch(0.0, 0.1, 0.02, 3.0)
@@ -61,12 +48,12 @@ def test_records_have_the_signals_in_their_order() -> None:
 
 def test_packing_and_unpacking_are_inverse() -> None:
     row = pack(PARAMETERS._replace(networks=np.array([1.0, 2.5])))
-    found = unpack_parameters(row)
+    found = unpack(Parameters, row)
     assert found[:-1] == PARAMETERS[:-1]
     assert found.networks.tolist() == [1.0, 2.5]
     assert pack(found).tobytes() == row.tobytes()
-    assert unpack_state(pack(START)) == START
-    assert unpack_inputs(pack(SLOW)) == SLOW
+    assert unpack(State, pack(START)) == START
+    assert unpack(Inputs, pack(SLOW)) == SLOW
 
 
 def test_tick_by_tick_gives_the_same_bits_as_all_rows_at_once() -> None:

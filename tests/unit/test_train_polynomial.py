@@ -9,8 +9,9 @@ import pytest
 from hilplant.bench import check_bench, load_bench
 from hilplant.models.load import by_speed
 from hilplant.models.polynomial import C1, C2, torque_over_speed
-from hilplant.models.records import NO_NETWORKS, Inputs, Load
+from hilplant.models.records import NO_NETWORKS, Load
 from hilplant.resources import shipped
+from hilplant.signals import Inputs
 from hilplant.train.no_load import Polynomials, Shape, content_of, cost, errors, fit, no_load_shape
 from hilplant.train.writing import sealed_text
 from hilplant.units import TURN_RAD

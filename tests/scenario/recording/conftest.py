@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from hilplant.bus.frame import Frame
 from hilplant.models import tables as channel
 from hilplant.models.plant import tick
-from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State, pack
+from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.models.row import pack
 from hilplant.recording.drain import RecordingWriter
 from hilplant.recording.metadata import describe
 from hilplant.runtime.ring import Ring
