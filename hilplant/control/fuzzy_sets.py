@@ -11,7 +11,6 @@ the gain gives, so K is near 0.72 when the error is small.
 from functools import lru_cache
 
 import numpy as np
-import skfuzzy
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
@@ -35,15 +34,15 @@ GAIN_STEPS = 400
 def degrees_of_membership(errors_rad_s: Floats) -> dict[str, Floats]:
     """Return how far each error [rad/s] belongs to each of the seven sets, 0 to 1."""
     errors = np.clip(errors_rad_s, -GREATEST_ERROR_RAD_S, GREATEST_ERROR_RAD_S)
-    degrees = {name: skfuzzy.trimf(errors, list(corners)) for name, corners in ERROR_SETS.items()}
-    mirrored = {name.replace("N", "P"): skfuzzy.trimf(-errors, list(ERROR_SETS[name])) for name in ("NB", "NM", "NS")}
+    degrees = {name: _triangle(errors, corners) for name, corners in ERROR_SETS.items()}
+    mirrored = {name.replace("N", "P"): _triangle(-errors, ERROR_SETS[name]) for name in ("NB", "NM", "NS")}
     return degrees | mirrored
 
 
 def gain_shapes(gains: Floats) -> dict[str, Floats]:
     """Return how far each value of K belongs to each of the four sets, 0 to 1."""
     return {
-        name: skfuzzy.zmf(gains, *corners) if len(corners) == 2 else skfuzzy.trimf(gains, list(corners))
+        name: _z_shape(gains, *corners) if len(corners) == 2 else _triangle(gains, corners)
         for name, corners in GAIN_SETS.items()
     }
 
@@ -54,8 +53,25 @@ def fuzzy_gain_at(errors_rad_s: Floats) -> Floats:
     shapes = gain_shapes(gains)
     degrees = degrees_of_membership(errors_rad_s)
     clipped = [np.minimum(degrees[error][:, np.newaxis], shapes[gain]) for error, gain in RULES.items()]
-    joined = np.max(clipped, axis=0)
-    return np.array([skfuzzy.defuzz(gains, row, "centroid") for row in joined])
+    return _centroid(gains, np.max(clipped, axis=0))
+
+
+def _triangle(x: Floats, corners: tuple[float, ...]) -> Floats:
+    return np.interp(x, corners, (0.0, 1.0, 0.0))
+
+
+def _z_shape(x: Floats, begin: float, end: float) -> Floats:
+    """Return 1 up to `begin`, 0 from `end` on, and two parabolas that meet half-way at 0.5."""
+    fallen = np.clip((x - begin) / (end - begin), 0.0, 1.0)
+    return np.where(fallen < 0.5, 1.0 - 2.0 * fallen**2, 2.0 * (1.0 - fallen) ** 2)
+
+
+def _centroid(x: Floats, heights: Floats) -> Floats:
+    """Return the centre of the area below each row of `heights`, straight between the points `x`; exact."""
+    left, right, widths = heights[:, :-1], heights[:, 1:], np.diff(x)
+    moments = widths / 6.0 * (left * (2.0 * x[:-1] + x[1:]) + right * (x[:-1] + 2.0 * x[1:]))
+    areas = widths / 2.0 * (left + right)
+    return np.asarray(moments.sum(axis=1) / areas.sum(axis=1))
 
 
 @lru_cache(maxsize=1)
