@@ -56,7 +56,7 @@ def prepare(testing: bool) -> None:
     """Make the environment, or renew it when pyproject.toml, the folder or what is asked of it has changed."""
     wanted = hashlib.sha256((HERE / "pyproject.toml").read_bytes() + str(HERE).encode()).hexdigest()
     installed = STAMP.read_text(encoding="utf-8").split() if STAMP.exists() and PYTHON.exists() else []
-    extra = "test" if testing or "test" in installed else "mdf"
+    extra = "test" if testing or "test" in installed else "all"
     if installed == [wanted, extra]:
         return
     print(f"start.py: installing hilplant[{extra}] into {VENV} (once, about two minutes) ...", flush=True)
@@ -96,7 +96,8 @@ def run_all_tests(arguments: list[str]) -> int:
     """Run linter, type checker, the tests that need no CAN, then those on a real vcan0; say how each went."""
     pytest = ["-m", "pytest", *arguments]
     results = {
-        "ruff": step("ruff", ["-m", "ruff", "check", "."]),
+        "ruff check": step("ruff check", ["-m", "ruff", "check", "."]),
+        "ruff format": step("ruff format", ["-m", "ruff", "format", "--check", "."]),
         "mypy": step("mypy", ["-m", "mypy", "hilplant", "start.py"]),
         "tests": step("tests", [*pytest, "-m", "not vcan"]),
     }

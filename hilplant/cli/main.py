@@ -5,6 +5,7 @@ import sys
 import typer
 
 from hilplant.cli.groups import group_app
+from hilplant.extras import extra_of, remedy
 from hilplant.failure import Failure, Unfit
 
 #: The first commands of the list; the others follow by the alphabet.
@@ -46,4 +47,6 @@ def _one_line(error: Exception) -> str:
         context = getattr(error, "ctx", None)
         hint = f"({context.command_path if context else 'hilplant'} --help shows what is right)"
         return text if text.startswith("Usage") else f"{text} {hint}"
+    if isinstance(error, ModuleNotFoundError) and (extra := extra_of(error.name)):
+        return f"this needs {error.name}: {remedy(extra)}"
     return f"{type(error).__name__}: {error} (--debug shows where)"

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from hilplant.atomic_write import claim, write_text
+from hilplant.extras import need
 from hilplant.failure import Failure
 
 BenchName = Annotated[str, typer.Argument(help="a bench file, or the name of a shipped bench", metavar="BENCH")]
@@ -38,6 +39,7 @@ def drawable(path: Path) -> Path:
     if path.suffix.lower() not in PICTURES:
         raise Failure(f"{path}: the ending must be one of {', '.join(PICTURES)}")
     claim(path)
+    need("plot")
     return path
 
 

@@ -1,6 +1,5 @@
 """Examination: compiled code, shared memory and optional parts of this installation."""
 
-import importlib.util
 import os
 import shutil
 import tempfile
@@ -8,9 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from hilplant.doctor.finding import Finding
+from hilplant.extras import EXTRAS, missing, remedy
 
 WANTED_SHARED_BYTES = 64 * 2**20
-EXTRAS = {"asammdf": ("mdf", "export to MF4")}
 
 
 def compiled_code(_root: Path) -> Iterator[Finding]:
@@ -44,12 +43,14 @@ def shared_memory(root: Path) -> Iterator[Finding]:
 
 
 def extras(_root: Path) -> Iterator[Finding]:
-    """Look for the optional parts."""
-    for module, (extra, purpose) in EXTRAS.items():
-        if importlib.util.find_spec(module):
-            yield Finding(module, "ok", f"present: {purpose}")
+    """Look for the optional libraries."""
+    for extra, contents in EXTRAS.items():
+        if absent := missing(extra):
+            yield Finding(
+                f"extra {extra}", "warn", f"{', '.join(absent)} missing: no {contents.purpose}", remedy(extra)
+            )
         else:
-            yield Finding(module, "warn", f"absent: no {purpose}", f"pip install 'hilplant[{extra}]'")
+            yield Finding(f"extra {extra}", "ok", f"present: {contents.purpose}")
 
 
 CHECKS = (compiled_code, shared_memory, extras)

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from hilplant.extras import need
 from hilplant.failure import Failure
 from hilplant.identify.cost import Cost
 from hilplant.measurements.measurement import Samples
@@ -63,10 +64,9 @@ def on_cluster(address: str) -> OnDask:
         When Dask is not installed or the scheduler does not answer.
 
     """
-    try:
-        from distributed import Client
-    except ImportError:
-        raise Failure("a Dask cluster needs dask: pip install 'hilplant[dask]'") from None
+    need("dask")
+    from distributed import Client
+
     try:
         client: Any = Client(address, timeout="10s")  # type: ignore[no-untyped-call]
     except (OSError, ValueError, TimeoutError) as error:

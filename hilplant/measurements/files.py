@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from hilplant.extras import need
 from hilplant.failure import Failure
 from hilplant.measurements.columns import KNOWN_NAMES, Column, unit_scale
 from hilplant.measurements.measurement import Channel
@@ -116,10 +117,9 @@ def _on_one_clock(time_s: Any, columns: Mapping[str, Any], units: Mapping[str, s
 
 
 def _mf4(origin: Origin) -> Channels:
-    try:
-        import asammdf
-    except ImportError:
-        raise Failure("MF4 files need asammdf: pip install 'hilplant[mdf]'") from None
+    need("mdf")
+    import asammdf
+
     try:
         with asammdf.MDF(origin.path) as file:
             source: Any = file

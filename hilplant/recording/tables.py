@@ -2,14 +2,17 @@
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import pyarrow as pa
 from numpy.typing import NDArray
+from pydantic_core import to_json
 
 from hilplant.atomic_write import whole_file
+from hilplant.extras import need
 from hilplant.failure import Failure
+
+#: Rows that are turned into text at once.
+_CHUNK = 4096
 
 Columns = Mapping[str, NDArray[np.float64]]
 
@@ -49,18 +52,24 @@ def check_ending(path: str | Path) -> None:
     if ending not in _WRITERS:
         raise TableError(f"{path}: the ending must be one of {', '.join(_WRITERS)}")
     if ending == ".mf4":
-        _mdf_library()
+        need("mdf")
+    if ending == ".parquet":
+        need("recording")
 
 
 def _write_csv(path: Path, columns: Columns, units: Mapping[str, str]) -> None:
-    from pyarrow import csv
-
     with path.open("wb") as file:
         file.write((",".join(columns) + "\n").encode())
-        csv.write_csv(pa.table(dict(columns)), file, csv.WriteOptions(include_header=False))
+        rows = np.stack(list(columns.values()), axis=1)
+        for first in range(0, len(rows), _CHUNK):
+            # As JSON: the shortest digits that read back the same, ten times as fast as repr().
+            text = to_json(rows[first : first + _CHUNK].tolist(), inf_nan_mode="constants")
+            lines = text[2:-2].replace(b"],[", b"\n") + b"\n"
+            file.write(lines.replace(b".0,", b",").replace(b".0\n", b"\n"))
 
 
 def _write_parquet(path: Path, columns: Columns, units: Mapping[str, str]) -> None:
+    import pyarrow as pa
     from pyarrow import parquet
 
     fields = [pa.field(name, pa.float64(), metadata={"unit": units.get(name, "")}) for name in columns]
@@ -68,21 +77,14 @@ def _write_parquet(path: Path, columns: Columns, units: Mapping[str, str]) -> No
 
 
 def _write_mf4(path: Path, columns: Columns, units: Mapping[str, str]) -> None:
-    asammdf = _mdf_library()
+    import asammdf
+
     names = list(columns)
     time_s = columns[names[0]]
     signals = [asammdf.Signal(columns[name], time_s, name=name, unit=units.get(name, "")) for name in names[1:]]
     with asammdf.MDF(version="4.10") as file:
         file.append(signals, comment="hilplant", common_timebase=True)
         file.save(path, overwrite=True, compression=2)
-
-
-def _mdf_library() -> Any:
-    try:
-        import asammdf
-    except ImportError:
-        raise TableError("MF4 files need asammdf: pip install 'hilplant[mdf]'") from None
-    return asammdf
 
 
 _WRITERS: dict[str, Callable[[Path, Columns, Mapping[str, str]], None]] = {

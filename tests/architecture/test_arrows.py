@@ -6,6 +6,7 @@ from typing import Any
 ARROWS: dict[str, set[str]] = {
     "units": set(),
     "failure": set(),
+    "extras": {"failure"},
     "jit": set(),
     "declaration": set(),
     "signals": {"units", "declaration"},
@@ -14,7 +15,7 @@ ARROWS: dict[str, set[str]] = {
     "bus": {"units", "declaration", "signals", "failure"},
     "control": {"units", "declaration", "signals", "failure", "jit", "models"},
     "runtime": {"units", "declaration", "signals", "failure", "jit", "models", "control", "bus"},
-    "recording": {"units", "atomic_write", "declaration", "signals", "failure", "jit", "models", "runtime"},
+    "recording": {"units", "extras", "atomic_write", "declaration", "signals", "failure", "jit", "models", "runtime"},
     "checked_yaml": {"failure", "resources"},
     "bench": {
         "units",
@@ -30,7 +31,7 @@ ARROWS: dict[str, set[str]] = {
         "bus",
     },
     "verdicts": {"checked_yaml"},
-    "doctor": {"jit"},
+    "doctor": {"extras", "jit"},
 }
 #: The stand-in ECU decides without knowing that there is a bus, a bench or a clock.
 PURE_ECU = {

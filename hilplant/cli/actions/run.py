@@ -11,8 +11,8 @@ import typer
 
 from hilplant.bench import Bench, load_bench
 from hilplant.bus.interface import TransportError
+from hilplant.extras import need
 from hilplant.failure import Failure
-from hilplant.recording.recorder import start_recorder
 from hilplant.runtime.loop import ROW_WIDTH, Control
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.scheduling import Privilege
@@ -29,6 +29,9 @@ def recording(bench: Bench, path: Path | None) -> Iterator[Ring | None]:
     if path is None:
         yield None
         return
+    need("recording")
+    from hilplant.recording.recorder import start_recorder
+
     ring = Ring.create(ROW_WIDTH)
     try:
         recorder = start_recorder(ring, path, bench, loop_cpu=bench.loop.cpu)

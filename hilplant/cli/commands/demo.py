@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from hilplant.cli.groups import command_app
+from hilplant.extras import need
 
 app = command_app()
 
@@ -19,6 +20,7 @@ def demo(
 
     Needs no CAN in the kernel and no privileges; leaves a recording and a plot.
     """
+    need("demo")
     from hilplant.cli.actions.demo import run_demo
 
     run_demo(seconds, out)

@@ -17,6 +17,7 @@ from hilplant.cli.options import (
     JsonFile,
     write_json,
 )
+from hilplant.extras import need
 
 app = command_app()
 
@@ -49,6 +50,7 @@ def identify(  # noqa: PLR0913, PLR0917 a command has as many options as it has
     Of a real wiper, with intervals. Three stages: transfer function, global search, least squares. What the data
     cannot tell is named.
     """
+    need("identify")
     from hilplant.cli.actions.identify import run_identification
     from hilplant.identify.from_files import Request
 

@@ -11,6 +11,7 @@ from hilplant.cli.options import (
     JsonFile,
     write_json,
 )
+from hilplant.extras import need
 
 app = command_app()
 
@@ -31,6 +32,7 @@ def inspect(  # noqa: PLR0913, PLR0917
 
     Exit code 0 when it will do for identification, else 1.
     """
+    need("identify")
     from hilplant.cli.actions.inspect import Inspection, inspect_data
 
     claim(json_file)

@@ -8,6 +8,7 @@ import typer
 from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import JsonFile, write_json
+from hilplant.extras import need
 
 app = command_app()
 
@@ -22,6 +23,7 @@ def motor(
 
     With the standard error of each parameter; docs/identification.md says what the file of readings holds.
     """
+    need("identify")
     from hilplant.motor_bench.motor_file import motor_from_readings
 
     claim(out)

@@ -7,6 +7,7 @@ import typer
 
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import JsonFile, flat, write_json
+from hilplant.extras import need
 
 app = command_app()
 
@@ -17,6 +18,7 @@ def replay(recording: Path, json_file: JsonFile = None) -> None:
 
     Exit code 0 when all are equal, else 1 with the first tick and signal that differ.
     """
+    need("recording")
     from hilplant.recording.replay import replay as replay_recording
 
     result = replay_recording(recording)

@@ -15,6 +15,7 @@ from hilplant.cli.options import (
     JsonFile,
     write_json,
 )
+from hilplant.extras import need
 
 app = command_app()
 
@@ -33,6 +34,7 @@ def validate(  # noqa: PLR0913, PLR0917
 
     Errors of current and park edges. Exit code 1 when one is above a bound that was given.
     """
+    need("identify")
     from hilplant.cli.actions.validate import validate_files
 
     claim(json_file)

@@ -7,6 +7,7 @@ import typer
 
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import Picture
+from hilplant.extras import need
 
 app = command_app()
 
@@ -14,6 +15,7 @@ app = command_app()
 @app.command(epilog="Example: hilplant plot recording run.hilrec run.png")
 def recording(recording: Annotated[Path, typer.Argument(help="what run --record has written")], out: Picture) -> None:
     """Draw a recording: voltage, current, speed, arms, switches."""
+    need("recording")
     from hilplant.plots.recording import plot_recording as draw
 
     draw(recording, out)

@@ -8,6 +8,7 @@ import typer
 from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import DEFAULT, BenchName, JsonFile, write_json
+from hilplant.extras import need
 
 app = command_app()
 
@@ -26,6 +27,8 @@ def control(
 
     With the speed sensor and without it, and through an hour of rain.
     """
+    if out is not None:
+        need("plot")
     from hilplant.cli.actions.study_control import control_figures
 
     claim(json_file)

@@ -4,6 +4,7 @@ import typer
 
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import JsonFile, write_json
+from hilplant.extras import need
 
 app = command_app()
 
@@ -17,6 +18,7 @@ def identification(json_file: JsonFile = None) -> None:
 
     Exit code 1 when one is neither reached nor explained by rounding.
     """
+    need("identify")
     from hilplant.thesis.published import as_table, figures, published_lines
 
     lines = published_lines()

@@ -8,6 +8,7 @@ import typer
 from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import JsonFile, write_json
+from hilplant.extras import need
 
 app = command_app()
 
@@ -25,6 +26,7 @@ def surrogates(
 
     Exit code 1 when to the ECU one is not as good as the physics that it stands for.
     """
+    need("train")
     from hilplant.atomic_write import make_folder
     from hilplant.thesis.surrogate_study import all_kept, compare, figures, lines, plot
 

@@ -7,6 +7,7 @@ import typer
 from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import DEFAULT, BenchName, JsonFile, write_json
+from hilplant.extras import need
 
 app = command_app()
 
@@ -26,6 +27,7 @@ def twin(
 
     Exit code 1 when errors or intervals are worse than they are to be.
     """
+    need("identify")
     from hilplant.bench import load_bench
     from hilplant.thesis.twin_study import twin_study
 

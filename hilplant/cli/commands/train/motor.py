@@ -8,6 +8,7 @@ import typer
 from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out, Seed
+from hilplant.extras import need
 
 app = command_app()
 
@@ -25,6 +26,7 @@ def motor(
     Open loop first, then closed loop, a path for each brush. Ctrl-C keeps the best so far. Exit code 1 when a scenario
     finds it beyond the bounds that its file states.
     """
+    need("train")
     from hilplant.cli.actions.train import run_training
     from hilplant.reports.motor import report_motor
 

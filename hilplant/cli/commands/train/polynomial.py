@@ -5,6 +5,7 @@ from pathlib import Path
 from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out
+from hilplant.extras import need
 
 app = command_app()
 
@@ -19,6 +20,7 @@ def polynomial(
 
     Two polynomials and two constants, by the costs (6.4) and (6.5).
     """
+    need("train")
     from hilplant.cli.actions.train import run_training
     from hilplant.reports.polynomial import train_polynomial
 

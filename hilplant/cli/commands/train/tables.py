@@ -8,6 +8,7 @@ import typer
 from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out
+from hilplant.extras import need
 
 app = command_app()
 
@@ -23,6 +24,7 @@ def tables(
 
     With as few knots as keep all of them within a bound.
     """
+    need("train")
     from hilplant.cli.actions.train import run_training
     from hilplant.reports.kinematic_tables import train_tables
 

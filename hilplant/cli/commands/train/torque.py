@@ -9,6 +9,7 @@ import typer
 from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import DEFAULT, BenchName, JsonFile, Out, Seed
+from hilplant.extras import need
 from hilplant.failure import Failure
 
 #: No wiper's crank turns faster: two hundred wipes a minute.
@@ -36,6 +37,7 @@ def torque(  # noqa: PLR0913, PLR0917
 
     Ctrl-C keeps the best so far. Exit code 1 when a random run finds it beyond the bound that its file states.
     """
+    need("train")
     from hilplant.cli.actions.train import run_training
     from hilplant.reports.torque import TorqueOptions, train_torque
     from hilplant.reports.torque_sizes import study_torque
