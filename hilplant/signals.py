@@ -19,7 +19,9 @@ SIDE_SCREENS = (("same", -1.0), *SCREENS)
 #: Which model gives the load's torque or moves the motor: physical (there is no network, or it has not been asked),
 #: network; or the physical one because the motor stands, or because the network was not trained for what is asked.
 IN_CHARGE = ("physical", "network", "standstill", "outside")
-MODES = ("waiting", "running", "safe", "degraded", "stopped")
+MODES = ("waiting", "running", "safe", "degraded", "stopped", "behind")
+#: Nobody records, everything is recorded, or something of the recording was lost.
+RECORDING = ("off", "complete", "lossy")
 STALK_POSITIONS = ("off", "intermittent", "slow", "fast")
 ECU_STATES = (
     "off", "flick", "single_wipe", "pause_1", "pause_2", "pause_3", "pause_4", "pause_5", "pause_6",
@@ -133,6 +135,14 @@ class Status(NamedTuple):
     link_down: Annotated[float, count("times the interface was lost")]
     saturated: Annotated[float, count("sent values that were limited to what their frame can carry")]
     ring_lost: Annotated[float, count("ticks or frames the recorder was too slow to take")]
+    recording: Annotated[float, choice(RECORDING, "whether ticks and frames are recorded, all of them")]
+    own_identifier: Annotated[float, count("frames of others under an identifier that this node alone sends")]
+    alternating: Annotated[
+        float, count("commands that took back at once what the one before had changed, as of two senders")
+    ]
+    stale_frame: Annotated[
+        float, count("commands that had waited in the system for longer than their timeout, as after a stall")
+    ]
 
 
 class StalkInputs(NamedTuple):

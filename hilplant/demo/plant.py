@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from hilplant.bench import Bench, load_bench
 from hilplant.bus.transport import open_transport
-from hilplant.cli.actions.run import recording
+from hilplant.cli.actions.run import Record, recording
 from hilplant.demo.sequence import Sequence
 from hilplant.ecu.node import EcuNode, run_ecu
 from hilplant.ecu.settings import controller_settings
@@ -69,7 +69,7 @@ def _serve(plan: Sequence, path: Path, say: Callable[[Message], None]) -> Summar
 
     node = _ecu_node(bench, plan)
     ecu = threading.Thread(target=drive, name="ecu", daemon=True)
-    with recording(bench, path) as ring:
+    with recording(bench, Record(path)) as ring:
         assert ring is not None
         name = ring.name
 

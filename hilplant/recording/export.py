@@ -1,33 +1,51 @@
 """Converts a recording to what other tools read: tables of signals, or logs of frames."""
 
+from collections.abc import Iterator, Mapping
 from os import PathLike
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
 from numpy.typing import NDArray
 
 from hilplant.atomic_write import whole_file
 from hilplant.failure import Failure
 from hilplant.recording import frame_logs
-from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, STATUS_COLUMNS
-from hilplant.recording.mf4_frames import append_frames
+from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, STATUS_COLUMNS, schema
+from hilplant.recording.mf4_frames import FrameGroups
 from hilplant.recording.reader import Recording, read_recording
-from hilplant.recording.tables import TableError, check_ending, fill_table
-from hilplant.signals import INPUTS, OUTPUTS, STATUS
+from hilplant.recording.span import EVERYTHING, Span
+from hilplant.recording.tables import TableError, check_ending, mf4_group, open_table
+from hilplant.signals import INPUTS, OUTPUTS, STATUS, Signal
 from hilplant.units import SECOND_NS
 
 TABLE_ENDINGS = (".mf4", ".csv", ".parquet")
+_SIGNALS: tuple[tuple[str, tuple[Signal, ...], tuple[str, ...]], ...] = (
+    ("", OUTPUTS, OUTPUT_COLUMNS),
+    ("in_", INPUTS, INPUT_COLUMNS),
+    ("status_", STATUS, STATUS_COLUMNS),
+)
+UNITS = (
+    {"time_s": "s"}
+    | {prefix + signal.name: signal.unit for prefix, signals, _ in _SIGNALS for signal in signals}
+    | {"deadline_s": "s"}
+)
+#: Rows that are held at once: half a minute, some 15 MB.
+_ROWS_AT_ONCE = 30_000
+
+Columns = dict[str, NDArray[np.float64]]
 
 
-def export(path: str | PathLike[str], out: str | PathLike[str]) -> str:
+def export(path: str | PathLike[str], out: str | PathLike[str], span: Span = EVERYTHING) -> str:
     """Write the recording `path` to `out` by its ending, and return one line that says what was written.
 
     .csv and .parquet hold every signal by tick, .blf and .asc every frame, .mf4 both. A failure leaves no half file.
+    The memory that it takes does not grow with the length of the recording.
 
     Raises
     ------
     Failure
-        When the ending is another one, or a file cannot be read or written.
+        When the ending is another one, nothing was recorded within `span`, or a file cannot be read or written.
     """
     out = Path(out)
     ending = out.suffix.lower()
@@ -39,7 +57,7 @@ def export(path: str | PathLike[str], out: str | PathLike[str]) -> str:
     try:
         if ending in TABLE_ENDINGS:
             check_ending(out)
-        recording = read_recording(path)
+        recording = read_recording(path).within(span)
         with whole_file(out) as passing:
             written = _write(recording, passing, ending)
     except TableError as error:
@@ -52,28 +70,61 @@ def export(path: str | PathLike[str], out: str | PathLike[str]) -> str:
 def _write(recording: Recording, out: Path, ending: str) -> str:
     if ending in frame_logs.ENDINGS:
         return f"{frame_logs.write_frame_log(recording, out)} frames"
-    columns, units = signal_columns(recording)
-    if ending == ".mf4":  # one clock for signals and frames, also where periods were lost
-        columns = {"deadline_s": columns.pop("deadline_s"), **columns}
-    fill_table(out, columns, units)
-    ticks = f"{len(columns['time_s'])} ticks of {len(columns) - 1} signals"
-    return f"{ticks}, {append_frames(recording, out)} frames" if ending == ".mf4" else ticks
+    if ending == ".mf4":
+        return _write_mf4(recording, out)
+    ticks = 0
+    with open_table(out, UNITS) as add:
+        for rows in _pieces(recording):
+            columns = _columns(rows, recording.run.step_ns)
+            add(columns)
+            ticks += len(columns["time_s"])
+    return _told(ticks)
 
 
-def signal_columns(recording: Recording) -> tuple[dict[str, NDArray[np.float64]], dict[str, str]]:
-    """Return all signals by tick, and their units: outputs by their name, ``in_...``, ``status_...``."""
-    table = recording.table(["tick", "deadline_ns", *OUTPUT_COLUMNS, *INPUT_COLUMNS, *STATUS_COLUMNS])
-    table = table.filter(table.column("deadline_ns").is_valid())
-    columns = {"time_s": table.column("tick").to_numpy() * recording.run.step_ns / SECOND_NS}
-    units = {"time_s": "s"}
-    for prefix, signals, names in (
-        ("", OUTPUTS, OUTPUT_COLUMNS),
-        ("in_", INPUTS, INPUT_COLUMNS),
-        ("status_", STATUS, STATUS_COLUMNS),
-    ):
+def _write_mf4(recording: Recording, out: Path) -> str:
+    import asammdf
+
+    ticks = 0
+    with asammdf.MDF(version="4.10") as file:
+        add, frames = mf4_group(file, UNITS), FrameGroups(file)
+        for rows in _pieces(recording):
+            columns = _columns(rows, recording.run.step_ns)
+            add({"deadline_s": columns.pop("deadline_s"), **columns})  # one clock for signals and frames
+            frames.add(rows)
+            ticks += len(columns["time_s"])
+        file.start_time = recording.run.start_utc
+        file.save(out, overwrite=True, compression=2)
+    return f"{_told(ticks)}, {frames.count} frames"
+
+
+def _told(ticks: int) -> str:
+    return f"{ticks} ticks of {len(UNITS) - 1} signals"
+
+
+def _pieces(recording: Recording) -> Iterator[pa.Table]:
+    """Give the rows in pieces that are worth writing; one without rows where there are none at all."""
+    held: list[pa.RecordBatch] = []
+    given = False
+    for rows in recording.batches():
+        held.append(rows)
+        if sum(map(len, held)) >= _ROWS_AT_ONCE:
+            yield pa.Table.from_batches(held).combine_chunks()
+            held, given = [], True
+    if held or not given:
+        yield pa.Table.from_batches(held, schema()).combine_chunks()
+
+
+def _columns(rows: pa.Table, step_ns: int) -> Columns:
+    rows = rows.filter(rows.column("deadline_ns").is_valid())
+    columns = {"time_s": rows.column("tick").to_numpy() * step_ns / SECOND_NS}
+    for prefix, signals, names in _SIGNALS:
         for signal, name in zip(signals, names, strict=True):
-            columns[prefix + signal.name] = table.column(name).to_numpy()
-            units[prefix + signal.name] = signal.unit
-    columns["deadline_s"] = table.column("deadline_ns").to_numpy() / SECOND_NS
-    units["deadline_s"] = "s"
-    return columns, units
+            columns[prefix + signal.name] = rows.column(name).to_numpy()
+    columns["deadline_s"] = rows.column("deadline_ns").to_numpy() / SECOND_NS
+    return columns
+
+
+def signal_columns(recording: Recording) -> tuple[Columns, Mapping[str, str]]:
+    """Return all signals by tick, and their units: outputs by their name, ``in_...``, ``status_...``."""
+    names = [name for name in schema().names if name != "frames"]
+    return _columns(recording.table(names), recording.run.step_ns), UNITS

@@ -3,6 +3,7 @@
 import base64
 import json
 import platform
+import secrets
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -58,6 +59,10 @@ class RunDescription:
     sources: dict[str, str]
     start_utc: datetime  # when the recorder was ready; the first tick follows within the loop's start-up
     build: dict[str, str]  # versions of everything that the outputs' bits depend on
+    series: str  # the same in all parts of one run, and in no other
+    part: int  # counted from 1
+    first_tick: int  # of this part; `state_row` is the state before it
+    first_ns: int  # when that tick was due, from the loop's start
 
 
 def current_build() -> dict[str, str]:
@@ -86,7 +91,21 @@ def describe(bench: RecordedBench, start_utc: datetime) -> dict[str, str]:
         "sources": json.dumps(dict(bench.sources)),
         "start_utc": start_utc.astimezone(UTC).isoformat(),
         "build": json.dumps(current_build()),
+        "series": secrets.token_hex(8),
+        "part": "1",
+        "first_tick": "0",
+        "first_ns": "0",
     }
+    return texts | {"crc32": _checksum(texts)}
+
+
+def part_description(
+    metadata: dict[str, str], part: int, first: tuple[int, int], state_row: NDArray[np.float64]
+) -> dict[str, str]:
+    """Return the metadata of a later part of the same run; `first` is its first tick and when that was due [ns]."""
+    begin = {"first_tick": str(first[0]), "first_ns": str(first[1])}
+    changes = {"part": str(part), **begin, "state_row": _encode(state_row)}
+    texts = {key: text for key, text in (metadata | changes).items() if key != "crc32"}
     return texts | {"crc32": _checksum(texts)}
 
 
@@ -110,6 +129,10 @@ def parse(metadata: dict[str, str]) -> RunDescription:
         sources=json.loads(metadata["sources"]),
         start_utc=datetime.fromisoformat(metadata["start_utc"]),
         build=json.loads(metadata["build"]),
+        series=metadata["series"],
+        part=int(metadata["part"]),
+        first_tick=int(metadata["first_tick"]),
+        first_ns=int(metadata["first_ns"]),
     )
 
 

@@ -1,12 +1,11 @@
 """The frames of a recording inside an MF4 file, laid out as ASAM's bus logging wants them."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 from numpy.typing import NDArray
 
-from hilplant.recording.reader import Recording
 from hilplant.units import SECOND_NS
 
 #: Name of the event by what kind of frame it is.
@@ -26,24 +25,35 @@ _FIELDS = (
 _FD_LENGTHS = (*range(9), 12, 16, 20, 24, 32, 48, 64)
 
 
-def append_frames(recording: Recording, path: Path) -> int:
-    """Add all frames to the MF4 file `path`, whose signals are there already; return how many."""
-    from asammdf import MDF, Signal, Source  # an extra
+class FrameGroups:
+    """The frames in an open MF4 file, a group for each kind; they come piece by piece."""
 
-    groups: dict[str, list[dict[str, Any]]] = {kind: [] for kind in EVENTS}
-    for rows in recording.batches():
-        for frame in rows.column("frames").flatten().to_pylist():
-            groups["error" if frame["error"] else "remote" if frame["remote"] else "data"].append(frame)
-    bus = Source("CAN", "CAN", "", Source.SOURCE_BUS, Source.BUS_TYPE_CAN)
-    with MDF(path) as file:
-        for kind, frames in groups.items():
-            if frames:
-                times = np.array([frame["time_ns"] for frame in frames]) / SECOND_NS
-                signal = Signal(_samples(frames, EVENTS[kind]), times, name=EVENTS[kind], source=bus)
-                file.append(signal, acq_name="CAN", acq_source=bus, common_timebase=True)
-        file.start_time = recording.run.start_utc
-        file.save(path, overwrite=True, compression=2)
-    return sum(map(len, groups.values()))
+    def __init__(self, file: Any) -> None:
+        self.count = 0
+        self._file = file
+        self._groups: dict[str, int] = {}
+
+    def add(self, rows: pa.Table) -> None:
+        """Add the frames of some rows of a recording."""
+        frames: dict[str, list[dict[str, Any]]] = {kind: [] for kind in EVENTS}
+        for frame in (frame for seen in rows.column("frames").to_pylist() for frame in seen):
+            frames["error" if frame["error"] else "remote" if frame["remote"] else "data"].append(frame)
+        for kind, found in frames.items():
+            if found:
+                self._add(kind, found)
+                self.count += len(found)
+
+    def _add(self, kind: str, frames: list[dict[str, Any]]) -> None:
+        from asammdf import Signal, Source  # an extra
+
+        times = np.array([frame["time_ns"] for frame in frames]) / SECOND_NS
+        samples = _samples(frames, EVENTS[kind])
+        if kind in self._groups:
+            self._file.extend(self._groups[kind], [(times, None), (samples, None)])
+            return
+        bus = Source("CAN", "CAN", "", Source.SOURCE_BUS, Source.BUS_TYPE_CAN)
+        signal = Signal(samples, times, name=EVENTS[kind], source=bus)
+        self._groups[kind] = self._file.append(signal, acq_name="CAN", acq_source=bus, common_timebase=True)
 
 
 def _samples(frames: list[dict[str, Any]], event: str) -> NDArray[np.void]:

@@ -1,17 +1,37 @@
-"""Opens a recording and gives its batches one by one; a cut-off tail is a note, damage is an error."""
+"""Opens a recording, or its parts as one, and gives it block by block; a cut-off tail is a note, damage is an error."""
 
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 import pyarrow as pa
+from numpy.typing import NDArray
 
 from hilplant.failure import Failure
-from hilplant.recording.format import CHECKSUM_KEY, FORMAT_VERSION, KEY_PREFIX, checksum, schema
+from hilplant.recording.format import (
+    CHECKSUM_KEY,
+    FORMAT_VERSION,
+    KEY_PREFIX,
+    LOST_KEY,
+    STATE_KEY,
+    checksum,
+    read_batch,
+    schema,
+    state_of,
+)
 from hilplant.recording.metadata import RunDescription, parse
+from hilplant.recording.rotation import parts_of
+from hilplant.recording.span import EVERYTHING, Span
+
+
+class Block(NamedTuple):
+    """Some rows in the order of their ticks, and the plant's state before the first whole one; None without one."""
+
+    rows: pa.RecordBatch
+    state_row: NDArray[np.float64] | None
 
 
 @dataclass
@@ -19,69 +39,123 @@ class Recording:
     """An open recording: the run it is of, and its rows batch by batch."""
 
     path: Path
-    run: RunDescription
+    run: RunDescription  # of the first part
+    parts: tuple[Path, ...]
+    first_ns: tuple[int, ...]  # when the first tick of each part was due, from the loop's start
     notes: list[str] = field(default_factory=list)  # filled while the batches are read
+    span: Span = EVERYTHING
 
     def batches(self) -> Iterator[pa.RecordBatch]:
-        """Give the rows in the order of their ticks; each call reads the file from its start.
+        """Give the rows in the order of their ticks; each call reads the files from their start.
 
         Raises
         ------
         Failure
-            When the file is damaged before its end.
+            When a file is damaged before its end.
         """
-        with open(self.path, "rb") as file:
-            stream = pa.ipc.open_stream(file)
-            number = 0
-            while (rows := self._next(stream, file, number)) is not None:
-                yield rows
-                number += 1
+        return (block.rows for block in self.blocks())
+
+    def within(self, span: Span) -> "Recording":
+        """Return the recording of this stretch of time.
+
+        Raises
+        ------
+        Failure
+            When the stretch is empty, or begins when the recording has ended.
+        """
+        if span.from_s >= span.to_s:
+            raise Failure(
+                f"{self.path}: a range goes from a time to a later one, not from {span.from_s:g} to {span.to_s:g} s"
+            )
+        return replace(self, span=span)
+
+    def blocks(self) -> Iterator[Block]:
+        """Give the rows as `batches` does, each batch with the state before it, if it is whole."""
+        for part, first_ns, next_ns in zip(self.parts, self.first_ns, (*self.first_ns[1:], None), strict=True):
+            if self.span.ends_by(first_ns):
+                return
+            if next_ns is not None and self.span.begins_after(next_ns):
+                continue
+            with open(part, "rb") as file:
+                for block in _PartReader(part, file, self.notes).blocks():
+                    rows = self.span.cut(block.rows)
+                    yield block if len(rows) == len(block.rows) else Block(rows, None)
 
     def table(self, columns: list[str] | None = None) -> pa.Table:
         """Return all rows, or some of their columns, at once."""
-        names = columns or schema({}).names
+        names = columns or schema().names
         parts = [batch.select(names) for batch in self.batches()]
-        return pa.Table.from_batches(parts, pa.schema([schema({}).field(name) for name in names]))
+        return pa.Table.from_batches(parts, pa.schema([schema().field(name) for name in names]))
 
-    def _next(self, stream: Any, file: BinaryIO, number: int) -> pa.RecordBatch | None:
+
+class _PartReader:
+    """Reads the blocks of one file."""
+
+    def __init__(self, path: Path, file: BinaryIO, notes: list[str]) -> None:
+        self._path, self._file, self._notes = path, file, notes
+
+    def blocks(self) -> Iterator[Block]:
+        """Give all whole blocks."""
+        stream = pa.ipc.open_stream(self._file)
+        number = 0
+        while (block := self._next(stream, number)) is not None:
+            yield block
+            number += 1
+
+    def _next(self, stream: Any, number: int) -> Block | None:
         try:
             rows, metadata = stream.read_next_batch_with_custom_metadata()
             rows.validate(full=True)
         except StopIteration:
-            self._note_end(file)
+            self._note_end()
             return None
         except (pa.ArrowException, OSError, ValueError) as error:
-            if file.tell() >= os.fstat(file.fileno()).st_size:
+            if self._file.tell() >= os.fstat(self._file.fileno()).st_size:
                 self._note_cut()
                 return None
-            raise Failure(f"{self.path}: damaged in block {number}: {_first_line(error)}") from error
-        stored = metadata.get(CHECKSUM_KEY) if metadata else None
-        if stored is not None and stored != checksum(rows):
+            raise Failure(f"{self._path}: damaged in block {number}: {_first_line(error)}") from error
+        stored = metadata or {}
+        if LOST_KEY in stored:
+            self._note(f"{_text(stored[LOST_KEY])} ticks or frames are missing: the recorder was too slow for them")
+        state = stored.get(STATE_KEY, b"")
+        if CHECKSUM_KEY in stored and stored[CHECKSUM_KEY] != checksum(rows, state):
             ticks = rows.column("tick")
             span = f"ticks {ticks[0]} to {ticks[-1]}"
-            raise Failure(f"{self.path}: damaged in block {number}: the values of {span} fail their checksum")
-        return rows
+            raise Failure(f"{self._path}: damaged in block {number}: the values of {span} fail their checksum")
+        return Block(read_batch(rows), state_of(state) if state else None)
 
-    def _note_end(self, file: BinaryIO) -> None:
-        file.seek(-8, os.SEEK_END)
-        if file.read() != b"\xff\xff\xff\xff\0\0\0\0":  # the end mark of an Arrow stream
+    def _note_end(self) -> None:
+        self._file.seek(-8, os.SEEK_END)
+        if self._file.read() != b"\xff\xff\xff\xff\0\0\0\0":  # the end mark of an Arrow stream
             self._note_cut()
 
     def _note_cut(self) -> None:
-        note = "the recording was cut off: its writer was killed; all whole blocks before that are used"
-        if note not in self.notes:
-            self.notes.append(note)
+        self._note("was cut off: its writer was killed; all whole blocks before that are used")
+
+    def _note(self, text: str) -> None:
+        note = f"{self._path}: {text}"
+        if note not in self._notes:
+            self._notes.append(note)
 
 
 def read_recording(path: str | os.PathLike[str]) -> Recording:
-    """Open a recording.
+    """Open a recording; a path that is no file, but of which there are parts, stands for all of them.
 
     Raises
     ------
     Failure
-        When there is no such file, or it is not a recording.
+        When there is no such file, it is not a recording, or the parts are of several runs.
     """
     path = Path(path)
+    parts = [path] if path.exists() else parts_of(path) or [path]
+    runs = [_description(part) for part in parts]
+    for part, run in zip(parts, runs, strict=True):
+        if run.series != runs[0].series:
+            raise Failure(f"{part}: is of another run than {parts[0]}; name the parts one by one")
+    return Recording(path, runs[0], tuple(parts), tuple(run.first_ns for run in runs))
+
+
+def _description(path: Path) -> RunDescription:
     try:
         with open(path, "rb") as file:
             found = pa.ipc.open_stream(file).schema
@@ -95,11 +169,13 @@ def read_recording(path: str | os.PathLike[str]) -> Recording:
         raise Failure(f"{path}: not a recording of hilplant")
     if metadata["format"] != FORMAT_VERSION:
         raise Failure(f"{path}: has format {metadata['format']}, this version reads format {FORMAT_VERSION}")
-    if found.names != schema({}).names:
-        unknown = sorted(set(found.names) ^ set(schema({}).names))
+    if found.names != schema().names:
+        unknown = sorted(set(found.names) ^ set(schema().names))
         raise Failure(f"{path}: has other columns than this version's: {', '.join(unknown) or 'another order'}")
+    if found.types != schema(stored=True).types:
+        raise Failure(f"{path}: has columns of other types than this version's")
     try:
-        return Recording(path, parse(metadata))
+        return parse(metadata)
     except (KeyError, ValueError, TypeError) as error:
         raise Failure(f"{path}: its description of the run is unreadable ({error})") from error
 

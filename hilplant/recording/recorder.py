@@ -2,16 +2,19 @@
 
 import contextlib
 import json
+import re
 import select
 import subprocess
 import sys
 import threading
+from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import IO
 
 from hilplant.failure import Failure
 from hilplant.recording.metadata import RecordedBench, describe
+from hilplant.recording.rotation import Rotation, parts_of
 from hilplant.runtime.ring import Ring
 
 _START_TIMEOUT_S = 30.0
@@ -30,6 +33,11 @@ class Recorder:
         self._ending = False
         self._watch = threading.Thread(target=self._wait, daemon=True, name="recorder watch")
         self._watch.start()
+
+    @property
+    def path(self) -> Path:
+        """The file, or the name of its parts."""
+        return self._path
 
     @property
     def pid(self) -> int:
@@ -58,6 +66,13 @@ class Recorder:
         _pipe(self._child.stdout).close()
         if self._child.returncode != 0:
             raise Failure(f"{self._path}: incomplete, {self._cause()}")
+        if lost := self._ring.lost:
+            raise Failure(f"{self._path}: incomplete, the recorder was too slow for {lost} ticks or frames")
+
+    def remove(self) -> None:
+        """Remove what was recorded, once the recorder has ended: for a run that did not begin."""
+        for path in [self._path, *parts_of(self._path)]:
+            path.unlink(missing_ok=True)
 
     def _wait(self) -> None:
         self._child.wait()
@@ -70,15 +85,18 @@ class Recorder:
             )
 
     def _cause(self) -> str:
-        code = self._child.returncode
-        return f"the recorder was killed by signal {-code}" if code < 0 else f"the recorder ended with code {code}"
+        return _ended(self._child.returncode)
 
 
-def start_recorder(ring: Ring, path: Path, bench: RecordedBench, loop_cpu: int | None = None) -> Recorder:
+def start_recorder(
+    ring: Ring, path: Path, bench: RecordedBench, loop_cpu: int | None = None, rotation: Rotation | None = None
+) -> Recorder:
     """Start a recorder for a run of `bench`; returns when its file is there and the ring waits for it.
 
     Parameters
     ----------
+    path
+        The file, or the name of its parts; a folder that is there gets one by the bench and the time of day.
     loop_cpu
         The CPU that the recorder keeps clear of.
 
@@ -87,9 +105,10 @@ def start_recorder(ring: Ring, path: Path, bench: RecordedBench, loop_cpu: int |
     Failure
         When the file exists already or cannot be written, or its ending is that of another format.
     """
-    if path.suffix.lower() in _EXPORTED:
-        raise Failure(f"{path}: a recording is no {path.suffix} file; record to .hilrec, and hilplant export makes one")
-    metadata = describe(bench, datetime.now(UTC))
+    rotation = rotation or Rotation()
+    start_utc = datetime.now(UTC)
+    path = _free(path / _name(bench.name, start_utc) if path.is_dir() else path, rotation)
+    order = {"metadata": describe(bench, start_utc), "rotation": asdict(rotation)}
     command = [sys.executable, "-m", "hilplant.recording.drain", ring.name, str(path)]
     child = subprocess.Popen(
         [*command, "" if loop_cpu is None else str(loop_cpu)],
@@ -97,15 +116,39 @@ def start_recorder(ring: Ring, path: Path, bench: RecordedBench, loop_cpu: int |
         stdout=subprocess.PIPE,
         start_new_session=True,
     )
-    with contextlib.suppress(BrokenPipeError):  # its own answer says why it ended
-        _pipe(child.stdin).write(json.dumps(metadata).encode() + b"\n")
-        _pipe(child.stdin).flush()
-    answer = _answer(child)
+    try:
+        with contextlib.suppress(BrokenPipeError):  # its own answer says why it ended
+            _pipe(child.stdin).write(json.dumps(order).encode() + b"\n")
+            _pipe(child.stdin).flush()
+        answer = _answer(child)
+    except BaseException:  # Ctrl-C: the recorder sees its pipe end, and leaves no file
+        with contextlib.suppress(OSError):
+            child.communicate(timeout=_START_TIMEOUT_S)
+        raise
     if answer != "ready":
         child.kill()
         child.communicate()
-        raise Failure(answer or f"{path}: the recorder did not start")
+        raise Failure(answer or f"{path}: the recorder did not start, {_ended(child.returncode)}")
     return Recorder(child, ring, path)
+
+
+def _name(bench: str, start_utc: datetime) -> str:
+    word = re.sub(r"[^\w.]+", "-", bench).strip("-.") or "run"
+    return f"{word}-{start_utc:%Y%m%dT%H%M%S}.{start_utc.microsecond // 1000:03d}Z.hilrec"
+
+
+def _free(path: Path, rotation: Rotation) -> Path:
+    """Return the path, if all that a run will write there is still free."""
+    if path.suffix.lower() in _EXPORTED:
+        raise Failure(f"{path}: a recording is no {path.suffix} file; record to .hilrec, and hilplant export makes one")
+    taken = parts_of(path)
+    if taken and (rotation.in_parts or not path.exists()):
+        raise Failure(f"{path}: cannot record to this file: there are parts of that name, such as {taken[-1]}")
+    return path
+
+
+def _ended(code: int) -> str:
+    return f"the recorder was killed by signal {-code}" if code < 0 else f"the recorder ended with code {code}"
 
 
 def _answer(child: subprocess.Popen[bytes]) -> str:

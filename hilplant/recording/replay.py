@@ -4,13 +4,12 @@ from dataclasses import dataclass
 from os import PathLike
 
 import numpy as np
-import pyarrow as pa
 from numpy.typing import NDArray
 
 from hilplant.models.plant import simulate_rows
 from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS
 from hilplant.recording.metadata import current_build
-from hilplant.recording.reader import Recording, matrix, read_recording
+from hilplant.recording.reader import Block, Recording, matrix, read_recording
 from hilplant.signals import OUTPUTS
 
 
@@ -46,7 +45,7 @@ class ReplayResult:
         elif self.difference is not None:
             verdict = f"different: {self.difference}; the {self.ticks} ticks before are equal"
         elif self.missing:
-            verdict = f"incomplete: the first {self.ticks} ticks are equal, then the recording has gaps"
+            verdict = f"incomplete: {self.ticks} ticks are equal, but the recording has gaps"
         else:
             verdict = "empty: the recording holds no ticks"
         gaps = [f"missing: ticks {first} to {last}" for first, last in self.missing]
@@ -59,20 +58,24 @@ class _Comparison:
     def __init__(self, recording: Recording) -> None:
         self._run = recording.run
         self._state = recording.run.state_row.copy()
-        self._next = 0
+        self._next = recording.run.first_tick
         self.ticks = 0
         self.difference: Difference | None = None
         self.missing: list[tuple[int, int]] = []
 
-    def add(self, rows: pa.RecordBatch) -> None:
-        """Compare a batch, as far as nothing is missing before it."""
-        rows = rows.filter(rows.column("deadline_ns").is_valid())
+    def add(self, block: Block) -> None:
+        """Compare a block: to the first gap in it; and after a gap before it from the state that the block tells."""
+        rows = block.rows.filter(block.rows.column("deadline_ns").is_valid())
         if not len(rows):
             return
         ticks = rows.column("tick").to_numpy()
-        before = len(self.missing)
+        if ticks[0] != self._next:
+            self.missing.append((self._next, int(ticks[0]) - 1))
+        known = not self.missing or block.state_row is not None
+        if self.missing and block.state_row is not None:
+            self._state = block.state_row.copy()
         unbroken = self._count_gaps(ticks)
-        if before or self.difference is not None or not unbroken:
+        if self.difference is not None or not known:
             return
         inputs, recorded = matrix(rows, INPUT_COLUMNS)[:unbroken], matrix(rows, OUTPUT_COLUMNS)[:unbroken]
         replayed = np.full_like(recorded, np.nan)
@@ -80,12 +83,11 @@ class _Comparison:
         self._compare(ticks, recorded, replayed)
 
     def _count_gaps(self, ticks: NDArray[np.int64]) -> int:
-        """Note the ticks that are missing, and return how many rows come before the first of them."""
-        expected = np.concatenate([[self._next], ticks[:-1] + 1])
-        broken = np.flatnonzero(ticks != expected)
-        self.missing += [(int(expected[at]), int(ticks[at]) - 1) for at in broken]
+        """Note the ticks that are missing in a block, and return how many rows come before the first of them."""
+        broken = np.flatnonzero(np.diff(ticks) != 1)
+        self.missing += [(int(ticks[at]) + 1, int(ticks[at + 1]) - 1) for at in broken]
         self._next = int(ticks[-1]) + 1
-        return int(broken[0]) if len(broken) else len(ticks)
+        return int(broken[0]) + 1 if len(broken) else len(ticks)
 
     def _compare(self, ticks: NDArray[np.int64], recorded: NDArray[np.float64], replayed: NDArray[np.float64]) -> None:
         different = recorded.view(np.uint64) != replayed.view(np.uint64)  # so that NaN and -0 count as they are
@@ -108,8 +110,8 @@ def replay(path: str | PathLike[str]) -> ReplayResult:
     """
     recording = read_recording(path)
     comparison = _Comparison(recording)
-    for rows in recording.batches():
-        comparison.add(rows)
+    for block in recording.blocks():
+        comparison.add(block)
     equal = comparison.difference is None and not comparison.missing and comparison.ticks > 0
     notes = list(recording.notes)
     if comparison.difference is not None:

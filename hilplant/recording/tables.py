@@ -1,7 +1,9 @@
 """Columns of numbers over time -> a file, in the format that its ending names: .csv, .parquet or .mf4."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +17,8 @@ from hilplant.failure import Failure
 _CHUNK = 4096
 
 Columns = Mapping[str, NDArray[np.float64]]
+#: Takes more rows of a table: columns of equal length, the same each time.
+Add = Callable[[Columns], None]
 
 
 class TableError(Failure):
@@ -35,15 +39,15 @@ def write_table(path: str | Path, columns: Columns, units: Mapping[str, str]) ->
     """
     check_ending(path)
     try:
-        with whole_file(Path(path)) as passing:
-            fill_table(passing, columns, units)
+        with whole_file(Path(path)) as passing, open_table(passing, units) as add:
+            add(columns)
     except OSError as error:
         raise TableError(f"{path}: cannot be written: {error.strerror or error}") from error
 
 
-def fill_table(path: Path, columns: Columns, units: Mapping[str, str]) -> None:
-    """Write columns as `write_table` does, in place; a failure is an OSError and leaves half a file."""
-    _WRITERS[path.suffix.lower()](path, columns, units)
+def open_table(path: Path, units: Mapping[str, str]) -> AbstractContextManager[Add]:
+    """Write as `write_table` does, in place and piece by piece; a failure is an OSError and leaves half a file."""
+    return _WRITERS[path.suffix.lower()](path, units)
 
 
 def check_ending(path: str | Path) -> None:
@@ -57,38 +61,77 @@ def check_ending(path: str | Path) -> None:
         need("recording")
 
 
-def _write_csv(path: Path, columns: Columns, units: Mapping[str, str]) -> None:
+@contextmanager
+def _csv_table(path: Path, _: Mapping[str, str]) -> Iterator[Add]:
     with path.open("wb") as file:
-        file.write((",".join(columns) + "\n").encode())
-        rows = np.stack(list(columns.values()), axis=1)
-        for first in range(0, len(rows), _CHUNK):
-            # As JSON: the shortest digits that read back the same, ten times as fast as repr().
-            text = to_json(rows[first : first + _CHUNK].tolist(), inf_nan_mode="constants")
-            lines = text[2:-2].replace(b"],[", b"\n") + b"\n"
-            file.write(lines.replace(b".0,", b",").replace(b".0\n", b"\n"))
+
+        def add(columns: Columns) -> None:
+            if not file.tell():
+                file.write((",".join(columns) + "\n").encode())
+            rows = np.stack(list(columns.values()), axis=1)
+            for first in range(0, len(rows), _CHUNK):
+                # As JSON: the shortest digits that read back the same, ten times as fast as repr().
+                text = to_json(rows[first : first + _CHUNK].tolist(), inf_nan_mode="constants")
+                lines = text[2:-2].replace(b"],[", b"\n") + b"\n"
+                file.write(lines.replace(b".0,", b",").replace(b".0\n", b"\n"))
+
+        yield add
 
 
-def _write_parquet(path: Path, columns: Columns, units: Mapping[str, str]) -> None:
+@contextmanager
+def _parquet_table(path: Path, units: Mapping[str, str]) -> Iterator[Add]:
     import pyarrow as pa
     from pyarrow import parquet
 
-    fields = [pa.field(name, pa.float64(), metadata={"unit": units.get(name, "")}) for name in columns]
-    parquet.write_table(pa.table(list(columns.values()), schema=pa.schema(fields)), path)
+    writer: parquet.ParquetWriter | None = None
+
+    def add(columns: Columns) -> None:
+        nonlocal writer
+        if writer is None:
+            fields = [pa.field(name, pa.float64(), metadata={"unit": units.get(name, "")}) for name in columns]
+            writer = parquet.ParquetWriter(path, pa.schema(fields))
+        writer.write_table(pa.table(list(columns.values()), schema=writer.schema))
+
+    try:
+        yield add
+    finally:
+        if writer is not None:
+            writer.close()
 
 
-def _write_mf4(path: Path, columns: Columns, units: Mapping[str, str]) -> None:
+@contextmanager
+def _mf4_table(path: Path, units: Mapping[str, str]) -> Iterator[Add]:
     import asammdf
 
-    names = list(columns)
-    time_s = columns[names[0]]
-    signals = [asammdf.Signal(columns[name], time_s, name=name, unit=units.get(name, "")) for name in names[1:]]
     with asammdf.MDF(version="4.10") as file:
-        file.append(signals, comment="hilplant", common_timebase=True)
+        yield mf4_group(file, units)
         file.save(path, overwrite=True, compression=2)
 
 
-_WRITERS: dict[str, Callable[[Path, Columns, Mapping[str, str]], None]] = {
-    ".csv": _write_csv,
-    ".parquet": _write_parquet,
-    ".mf4": _write_mf4,
+def mf4_group(file: Any, units: Mapping[str, str]) -> Add:
+    """Return what adds rows to one group of an open MF4 file; the first column is its time."""
+    import asammdf
+
+    group: int | None = None
+
+    def add(columns: Columns) -> None:
+        nonlocal group
+        time_s, *values = columns.values()
+        if group is None:
+            names = list(columns)[1:]
+            signals = [
+                asammdf.Signal(column, time_s, name=name, unit=units.get(name, ""))
+                for name, column in zip(names, values, strict=True)
+            ]
+            group = file.append(signals, comment="hilplant", common_timebase=True)
+        elif len(time_s):
+            file.extend(group, [(time_s, None), *((column, None) for column in values)])
+
+    return add
+
+
+_WRITERS: dict[str, Callable[[Path, Mapping[str, str]], AbstractContextManager[Add]]] = {
+    ".csv": _csv_table,
+    ".parquet": _parquet_table,
+    ".mf4": _mf4_table,
 }

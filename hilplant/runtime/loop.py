@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from hilplant.bus.node import Node
 from hilplant.models.plant import tick as plant_tick
+from hilplant.models.records import STATE_INDEX
 from hilplant.runtime.clock import Clock
 from hilplant.runtime.latency import Latency
 from hilplant.runtime.ring import Ring
@@ -20,17 +21,19 @@ from hilplant.runtime.watchdog import Watchdog
 from hilplant.signals import INPUTS, MODES, OUTPUT_INDEX, OUTPUTS, STATUS, STATUS_INDEX
 from hilplant.units import MICROSECOND_NS, SECOND_NS
 
-WAITING, RUNNING, SAFE, DEGRADED, STOPPED = (float(index) for index in range(len(MODES)))
+WAITING, RUNNING, SAFE, DEGRADED, STOPPED, BEHIND = (float(index) for index in range(len(MODES)))
 
 _FIRST_INPUT = 2
 _FIRST_OUTPUT = _FIRST_INPUT + len(INPUTS)
 _FIRST_STATUS = _FIRST_OUTPUT + len(OUTPUTS)
 
-#: Width of a row in the ring: tick, deadline_ns, inputs, outputs, status.
-ROW_WIDTH = _FIRST_STATUS + len(STATUS)
+_FIRST_STATE = _FIRST_STATUS + len(STATUS)
 
-_TICK, _MODE, _OVERRUNS, _WORST, _RING_LOST = (
-    STATUS_INDEX[name] for name in ("tick", "mode", "overruns", "worst_latency_us", "ring_lost")
+#: Width of a row in the ring: tick, deadline_ns, inputs, outputs, status, the plant's state before the tick.
+ROW_WIDTH = _FIRST_STATE + len(STATE_INDEX)
+
+_TICK, _MODE, _OVERRUNS, _WORST, _RING_LOST, _RECORDING = (
+    STATUS_INDEX[name] for name in ("tick", "mode", "overruns", "worst_latency_us", "ring_lost", "recording")
 )
 _GUARD = OUTPUT_INDEX["guard"]
 _DEGRADED_FOR_NS = SECOND_NS
@@ -95,7 +98,8 @@ class Loop:
         self._line = np.zeros(ROW_WIDTH)
         self._inputs = self._line[_FIRST_INPUT:_FIRST_OUTPUT]
         self._outputs = self._line[_FIRST_OUTPUT:_FIRST_STATUS]
-        self._status = self._line[_FIRST_STATUS:]
+        self._status = self._line[_FIRST_STATUS:_FIRST_STATE]
+        self._before = self._line[_FIRST_STATE:]
         self._state = plant.state_row.copy()
         self._published: list[float] = [0.0] * (len(OUTPUTS) + len(STATUS))
         self._bus_ns = 0
@@ -141,6 +145,7 @@ class Loop:
                 self._inputs[index] = value
         elif self.control is not None:
             self.control(self._bus_ns, self._state, self._inputs)
+        self._before[:] = self._state
         plant_tick(self._state, self._inputs, self._plant.parameter_row, self._plant.tables, self._outputs)
         self._published = [*self._outputs.tolist(), *self._status_values(mode)]
 
@@ -185,7 +190,9 @@ class Loop:
         counts[_MODE] = int(mode)
         counts[_OVERRUNS] = self.progress.overruns
         counts[_WORST] = self.latency.worst_ns // MICROSECOND_NS
-        counts[_RING_LOST] = self._ring.lost if self._ring is not None else 0
+        if self._ring is not None:
+            counts[_RING_LOST] = self._ring.lost
+            counts[_RECORDING] = self._ring.recording
         return counts
 
     def _overrun(self, periods: int) -> int:

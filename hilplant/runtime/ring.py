@@ -40,7 +40,7 @@ _HEADER_BYTES = 256
 # lie on cache lines of their own.
 _MAGIC_AT, _WIDTH, _ROWS, _FRAMES = range(4)
 _ROW_HEAD, _FRAME_HEAD, _LOST, _CLOSED = range(8, 12)
-_ROW_TAIL, _FRAME_TAIL, _READER = range(16, 19)
+_ROW_TAIL, _FRAME_TAIL, _READER, _FAILED = range(16, 20)
 
 
 class Ring:
@@ -103,6 +103,19 @@ class Ring:
         return self._words[_LOST]
 
     @property
+    def row_written(self) -> bool:
+        """Whether there has been a row."""
+        return self._words[_ROW_HEAD] > 0
+
+    @property
+    def recording(self) -> int:
+        """What becomes of the rows, as an index of ``signals.RECORDING``: none, all or not all of them are kept."""
+        words = self._words
+        if self._lost or words[_FAILED]:
+            return 2
+        return 1 if words[_READER] else 0
+
+    @property
     def writer_closed(self) -> bool:
         """The writer has written its last row."""
         return self._words[_CLOSED] != 0
@@ -142,7 +155,8 @@ class Ring:
         self._words[_LOST] = self._lost
 
     def forget_reader(self) -> None:
-        """Overwrite the oldest again instead of waiting for a reader that has died."""
+        """Overwrite the oldest again instead of waiting for a reader that has died; `recording` tells it at once."""
+        self._words[_FAILED] = 1
         self._words[_READER] = 0
 
     def close_writer(self) -> None:
@@ -166,6 +180,10 @@ class Ring:
         taken: NDArray[np.void] = self._frames[np.arange(tail, head) % self._frame_count]
         self._words[_FRAME_TAIL] = head
         return taken
+
+    def fail(self) -> None:
+        """Say, as the reader, that what it takes is no longer kept; `recording` tells it from now on."""
+        self._words[_FAILED] = 1
 
     def _begin(self) -> None:
         """On the first call, skip what the writer has overwritten, or is just overwriting; hold the rest."""

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import typer
 
 from hilplant.bench import Bench, load_bench
-from hilplant.bus.interface import TransportError
 from hilplant.extras import need
 from hilplant.failure import Failure
+from hilplant.recording.rotation import Rotation
 from hilplant.runtime.loop import ROW_WIDTH, Control
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.scheduling import Privilege
@@ -23,10 +23,23 @@ from hilplant.units import MILLISECOND_NS, SECOND_NS
 _NO_FAULTS = ("tick", "overruns", "worst_latency_us")
 
 
+class Record(NamedTuple):
+    """Where to record to, and where its parts end."""
+
+    path: Path
+    rotation: Rotation = Rotation()
+
+
 @contextmanager
-def recording(bench: Bench, path: Path | None) -> Iterator[Ring | None]:
-    """Give the loop a ring that another process drains into `path`; None where nothing is to be recorded."""
-    if path is None:
+def recording(bench: Bench, record: Record | None) -> Iterator[Ring | None]:
+    """Give the loop a ring that another process drains into files; None where nothing is to be recorded.
+
+    Raises
+    ------
+    Failure
+        At the end, when something of the run was not recorded.
+    """
+    if record is None:
         yield None
         return
     need("recording")
@@ -34,14 +47,13 @@ def recording(bench: Bench, path: Path | None) -> Iterator[Ring | None]:
 
     ring = Ring.create(ROW_WIDTH)
     try:
-        recorder = start_recorder(ring, path, bench, loop_cpu=bench.loop.cpu)
+        recorder = start_recorder(ring, record.path, bench, bench.loop.cpu, record.rotation)
         try:
             yield ring
         finally:
             recorder.finish()
-    except TransportError:  # nothing has started: an empty recording would be in the way of the next attempt
-        path.unlink(missing_ok=True)
-        raise
+            if not ring.row_written:  # nothing has started: an empty recording would be in the way of the next attempt
+                recorder.remove()
     finally:
         ring.close()
 
@@ -54,7 +66,7 @@ class Inside(NamedTuple):
 
 
 def run_daemon(
-    name: str, seconds: float | None, record: Path | None, channel: str | None, inside: Inside | None = None
+    name: str, seconds: float | None, record: Record | None, channel: str | None, inside: Inside | None = None
 ) -> Summary:
     """Serve a bench and say on the terminal how it started and how it ended."""
     bench = load_bench(name)
@@ -105,7 +117,7 @@ def _say_start(bench: Bench, privileges: list[Privilege]) -> None:
         typer.echo("  punctuality is not what it could be: hilplant doctor says more", err=True)
 
 
-def _say_end(summary: Summary, record: Path | None) -> None:
+def _say_end(summary: Summary, record: Record | None) -> None:
     typer.echo(
         f"{summary.ticks} ticks, {summary.overruns} overruns, late by p50 {summary.latency_p50_us:g} us, "
         f"p99 {summary.latency_p99_us:g} us, at most {summary.latency_max_us:.0f} us"
@@ -114,6 +126,6 @@ def _say_end(summary: Summary, record: Path | None) -> None:
     if faults:
         typer.echo("faults: " + ", ".join(f"{name} {count}" for name, count in faults.items()))
     if record is not None and summary.recording_complete:
-        typer.echo(f"recorded to {record}")
+        typer.echo(f"recorded to {record.path}" + (", in parts" if record.rotation.in_parts else ""))
     if summary.stopped_by_overrun:
         typer.echo("stopped: a tick came late and the bench says on_overrun: stop", err=True)

@@ -26,7 +26,11 @@ app = command_app()
 def run(  # noqa: PLR0913, PLR0917
     bench: BenchName = DEFAULT,
     seconds: Seconds = None,
-    record: Annotated[Path | None, typer.Option(help="record every tick and every frame to this file")] = None,
+    record: Annotated[
+        Path | None, typer.Option(help="record every tick and every frame to this file, or to a new one in this folder")
+    ] = None,
+    rotate: Annotated[str | None, typer.Option(help="record in parts of this size or time: 100MB, 1h, or both")] = None,
+    keep: Annotated[int | None, typer.Option(min=1, help="keep this many parts, the newest")] = None,
     channel: Channel = None,
     controller: Annotated[str | None, typer.Option(help="a velocity controller inside the loop, by its name")] = None,
     reference: Annotated[
@@ -39,13 +43,18 @@ def run(  # noqa: PLR0913, PLR0917
     Ends when the time is up, or on SIGTERM or Ctrl-C. With --controller, relays and supply are commanded inside the
     loop in every tick, and not by frames; docs/control.md tells the names.
     """
-    from hilplant.cli.actions.run import Inside, run_daemon
+    from hilplant.cli.actions.run import Inside, Record, run_daemon
+    from hilplant.recording.rotation import Rotation
 
     if reference is not None and controller is None:
         raise Failure("--reference is what a controller is asked for: give --controller NAME with it")
+    rotation = Rotation.parse(rotate, keep)
+    if rotation.in_parts and record is None:
+        raise Failure("--rotate is about a recording: give --record FILE with it")
+    to = None if record is None else Record(record, rotation)
     claim(json_file)
     inside = None if controller is None else Inside(controller, reference or "3.14")
-    summary = run_daemon(bench, seconds, record, channel, inside)
+    summary = run_daemon(bench, seconds, to, channel, inside)
     missing = " | ".join(f"{given.name}: {given.mend}" for given in summary.privileges if not given.granted)
     write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))
     raise typer.Exit(1 if summary.stopped_by_overrun or not summary.recording_complete else 0)

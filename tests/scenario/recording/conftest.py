@@ -13,19 +13,21 @@ from numpy.typing import NDArray
 from hilplant.bus.frame import Frame
 from hilplant.models import tables as channel
 from hilplant.models.plant import tick
-from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State
+from hilplant.models.records import STATE_INDEX, Arm, Brush, Load, Motor, Parameters, ParkSwitch, State
 from hilplant.models.row import pack
-from hilplant.recording.drain import RecordingWriter
 from hilplant.recording.metadata import describe
+from hilplant.recording.rotation import Rotation
+from hilplant.recording.writer import RecordingWriter
 from hilplant.runtime.ring import Ring
 from hilplant.signals import INPUTS, OUTPUTS, STATUS
 
-ROW_WIDTH = 2 + len(INPUTS) + len(OUTPUTS) + len(STATUS)
+STATE_AT = 2 + len(INPUTS) + len(OUTPUTS) + len(STATUS)
 STEP_NS = 1_000_000
 START = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)
 _OUTPUTS_AT = 2 + len(INPUTS)
 _STATUS_AT = _OUTPUTS_AT + len(OUTPUTS)
 
+ROW_WIDTH = STATE_AT + len(STATE_INDEX)
 MOTOR = Motor(Brush(0.6, 2.0e-3, 0.035), Brush(0.5, 1.5e-3, 0.024), 5.0e-5, 1.0e-5, 0.02, gear_ratio=60.0)
 ARM = Arm(0.3, 0.5)
 
@@ -93,6 +95,7 @@ class Run:
                 on, fast = self._random.integers(0, 2, 2)
                 line[2:5] = on, fast, self._random.uniform(9.0, 15.0)
             inputs, outputs = line[2:_OUTPUTS_AT], line[_OUTPUTS_AT:_STATUS_AT]
+            line[STATE_AT:] = self._state
             tick(self._state, inputs, self.bench.parameter_row, self.bench.tables, outputs)
             line[_STATUS_AT] = number
             frame = FRAMES[number % len(FRAMES)]
@@ -127,17 +130,17 @@ def frames() -> tuple[Frame, ...]:
 def record_run(tmp_path: Path) -> Callable[..., Path]:
     """Record a run into a file in this process, in blocks of `block` ticks."""
 
-    def record(ticks: int = 1500, block: int = 400, **settings: Any) -> Path:
+    def record(ticks: int = 1500, block: int = 400, rotation: Rotation | None = None, **settings: Any) -> Path:
         ring = Ring.create(ROW_WIDTH)
         run = Run(ring, **settings)
         path = tmp_path / f"run-{run.seed}.hilrec"
-        with path.open("wb") as file:
-            writer = RecordingWriter(file, describe(run.bench, START), ring.row_width)
-            for begin in range(0, ticks, block):
-                run.go(min(block, ticks - begin))
-                writer.take(ring)
-                writer.write(last=begin + block >= ticks)
-            writer.close()
+        path.unlink(missing_ok=True)
+        writer = RecordingWriter(path, describe(run.bench, START), ring.row_width, rotation)
+        for begin in range(0, ticks, block):
+            run.go(min(block, ticks - begin))
+            writer.take(ring)
+            writer.write(last=begin + block >= ticks)
+        writer.close()
         ring.close()
         return path
 
