@@ -22,7 +22,7 @@ from hilplant.units import RAD_PER_DEG, SECOND_NS, TURN_RAD
 _COLUMNS, _ROWS = 78, 22
 _BAR_CELLS = 26
 _PICTURES_PER_SECOND = 12.0
-_MODE_STYLES = dict(zip(MODES, ("yellow", "green", "red", "yellow", "dim"), strict=True))
+_MODE_STYLES = dict(zip(MODES, ("yellow", "green", "red", "yellow", "dim", "red"), strict=True))
 
 # The screen is a sketch: right proportions for the shipped linkage, the angles are the plant's.
 _LEFT_PIVOT, _RIGHT_PIVOT = (-0.27, 0.03), (0.20, 0.03)

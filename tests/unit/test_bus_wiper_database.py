@@ -9,7 +9,7 @@ from cantools.database.can.message import Message
 from cantools.database.can.signal import Signal
 
 from hilplant import signals
-from hilplant.signals import ECU_FAULTS, ECU_STATES, IN_CHARGE, MODES, SCREENS, STALK_POSITIONS, STATUS
+from hilplant.signals import ECU_FAULTS, ECU_STATES, IN_CHARGE, MODES, RECORDING, SCREENS, STALK_POSITIONS, STATUS
 
 ROOT = Path(__file__).parents[2]
 WIPER = Database(strict=True)
@@ -61,8 +61,9 @@ def test_value_tables_hold_the_plants_own_names() -> None:
     assert tables["EcuState"] == dict(enumerate(ECU_STATES))
     assert tables["EcuFault"] == dict(enumerate(ECU_FAULTS))
     assert tables["LoadMode"] == tables["MotorMode"] == dict(enumerate(IN_CHARGE))
+    assert tables["Recording"] == dict(enumerate(RECORDING))
     from_plant = {"Mode", "Screen", "RelayOn", "RelayFast", "ParkContact", "Guard", "LoadMode", "MotorMode"}
-    assert set(tables) == from_plant | {"Master_Input", "Flick_Wipe", "Wash", "EcuState", "EcuFault"}
+    assert set(tables) == from_plant | {"Recording"} | {"Master_Input", "Flick_Wipe", "Wash", "EcuState", "EcuFault"}
 
 
 def test_every_count_of_the_status_has_a_signal() -> None:
