@@ -9,6 +9,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from hilplant.atomic_write import whole_file
+from hilplant.declaration import Signal
 from hilplant.failure import Failure
 from hilplant.recording import frame_logs
 from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, STATUS_COLUMNS, schema
@@ -16,7 +17,7 @@ from hilplant.recording.mf4_frames import FrameGroups
 from hilplant.recording.reader import Recording, read_recording
 from hilplant.recording.span import EVERYTHING, Span
 from hilplant.recording.tables import TableError, check_ending, mf4_group, open_table
-from hilplant.signals import INPUTS, OUTPUTS, STATUS, Signal
+from hilplant.signals import INPUTS, OUTPUTS, STATUS
 from hilplant.units import SECOND_NS
 
 TABLE_ENDINGS = (".mf4", ".csv", ".parquet")

@@ -8,7 +8,7 @@ from cantools.database.can import Database
 from cantools.database.can.message import Message
 from cantools.database.can.signal import Signal
 
-from hilplant import signals
+from hilplant import declaration, signals
 from hilplant.signals import ECU_FAULTS, ECU_STATES, IN_CHARGE, MODES, RECORDING, SCREENS, STALK_POSITIONS, STATUS
 
 ROOT = Path(__file__).parents[2]
@@ -106,7 +106,7 @@ def test_the_documentations_table_of_the_plants_signals_is_the_list() -> None:
     assert rows == [_signal_row(way, signal) for way, listed in kinds for signal in listed]
 
 
-def _signal_row(way: str, signal: signals.Signal) -> str:
+def _signal_row(way: str, signal: declaration.Signal) -> str:
     span = {
         "flag": "0, 1",
         "choice": ", ".join(signal.choices),
