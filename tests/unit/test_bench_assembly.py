@@ -186,7 +186,7 @@ def test_the_two_sides_understand_each_other(bench: Bench) -> None:
         assert limited == 0
         for target, value in zip(received.targets, received.decode(payload), strict=True):
             assert value == pytest.approx(heard[INPUTS[target].name], abs=0.005)
-    shown = [0.5] * len(OUTPUTS) + [3.0] * (len(PUBLISHED) - len(OUTPUTS))
+    shown = [0.5] * len(OUTPUTS) + [min(3.0, signal.maximum) for signal in PUBLISHED[len(OUTPUTS) :]]
     for sent, received in zip(bench.send, ecu.receive, strict=True):
         payload, _ = sent.encode(shown)
         values = received.decode(payload)
