@@ -1,33 +1,42 @@
-"""A bench file and all that it names -> a bench that can run, or everything that is wrong with them."""
+"""A bench's text or description -> a bench that can run, or everything that is wrong with it.
+
+Three phases: :mod:`hilplant.bench.source` reads the files, :mod:`hilplant.bench.description` says what they may hold,
+and here the bench is built from the description alone.
+"""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hilplant import resources
-from hilplant.bench.bus import assemble_bus
-from hilplant.bench.description import BenchFile, InitialSection, LoopSettings
+from hilplant.bench.bus import build_bus
+from hilplant.bench.description import BenchDescription, LoopSettings
 from hilplant.bench.ecu_description import EcuSettings
-from hilplant.bench.ecu_messages import EcuMessages, assemble_ecu_messages
+from hilplant.bench.ecu_messages import EcuMessages, build_ecu_messages
 from hilplant.bench.ecu_side import EcuSide, build_ecu_side
-from hilplant.bench.inheritance import read_bench_file
 from hilplant.bench.mapping import MappedMessage
-from hilplant.bench.plant import Plant, assemble_plant
+from hilplant.bench.plant import Plant, build_plant
+from hilplant.bench.source import Source, read_source
 from hilplant.bench.values import signal_values
 from hilplant.bus.codec import ReceivedMessage, SentMessage
-from hilplant.checked_yaml.place import Place
 from hilplant.checked_yaml.problems import BenchError, Problem
-from hilplant.checked_yaml.reading import Description, Reading
+from hilplant.checked_yaml.spot import Spot
+from hilplant.checked_yaml.yaml_reader import Document
 from hilplant.models.park_phase import phase_at_rest
 from hilplant.models.park_switch import cam_closed
 from hilplant.models.records import Parameters, State
 from hilplant.models.row import pack
 from hilplant.signals import INPUTS
 from hilplant.units import MILLISECOND_NS, SECOND_NS
+
+#: A path, the name of a shipped bench, YAML text, or a description that a program made.
+BenchSource = str | Path | BenchDescription
+
+#: What a bench is called in messages that was given as a description.
+DESCRIBED = Path("(description)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +46,8 @@ class Bench:
     `parameter_row`, `state_row` and `input_row` are flat rows for compiled code (see
     :mod:`hilplant.models.records`), the last two with the values at the start; `safe` are inputs by index
     with their values while commands are lost; `sources` is the text of every file that was read, by its name;
-    `plant` is what the rows and tables were made from.
+    `plant` is what the rows and tables were made from, `description` all that was written, `warnings` what is
+    doubtful about it.
     """
 
     name: str
@@ -60,6 +70,8 @@ class Bench:
     commands: tuple[MappedMessage, ...]
     reports: tuple[MappedMessage, ...]
     ecu_messages: EcuMessages
+    description: BenchDescription
+    warnings: tuple[Problem, ...] = ()
 
     @property
     def others(self) -> frozenset[tuple[int, bool]]:
@@ -76,8 +88,8 @@ class Bench:
         return build_ecu_side(self.commands, reports, self.ecu.period_ms, self.ecu_messages)
 
 
-def load_bench(name: str | Path = "default") -> Bench:
-    """Load a bench by its path, or a shipped one by its name.
+def load_bench(source: BenchSource = "default") -> Bench:
+    """Load a bench by its path or, for a shipped one, its name; from YAML text; or from a description.
 
     Raises
     ------
@@ -85,21 +97,18 @@ def load_bench(name: str | Path = "default") -> Bench:
         With every problem in the bench's files, each with file and line.
 
     """
-    reading = Reading()
-    bench = _assemble(reading, resources.named("benches", name))
-    reading.raise_problems()
+    bench, problems = _attempt(source)
+    errors = [problem for problem in problems if problem.severity == "error"]
+    if errors:
+        raise BenchError(errors)
     if bench is None:
         raise AssertionError("a bench that was not built left no problem behind")
     return bench
 
 
-def check_bench(name: str | Path = "default") -> list[Problem]:
-    """Return all that is wrong with a bench, sorted by file and line."""
-    try:
-        load_bench(name)
-    except BenchError as error:
-        return list(error.problems)
-    return []
+def check_bench(source: BenchSource = "default") -> list[Problem]:
+    """Return all that is wrong with a bench, sorted by file and line; of a sound one, what is doubtful."""
+    return list(_attempt(source)[1])
 
 
 def initial_state(parameters: Parameters, initial: Mapping[str, Any]) -> NDArray[np.float64]:
@@ -110,79 +119,79 @@ def initial_state(parameters: Parameters, initial: Mapping[str, Any]) -> NDArray
     return pack(State(park_contact=contact, park_phase=phase)._replace(**initial))
 
 
-def _assemble(reading: Reading, path: Path) -> Bench | None:
-    document = read_bench_file(reading, path)
-    if reading.problems and document.data is None:
+def _attempt(source: BenchSource) -> tuple[Bench | None, tuple[Problem, ...]]:
+    """Read, check and build a bench; return it, if nothing is wrong, and every problem."""
+    if isinstance(source, BenchDescription):
+        text = source.model_dump_json(exclude_unset=True)
+        made = Source(DESCRIBED, Document(str(DESCRIBED)))
+        made.reading.sources[str(DESCRIBED)] = text
+        return _built(made, source)
+    read = read_source(source)
+    if not read.is_readable:
+        return None, read.reading.sorted_problems()
+    return _built(read, read.reading.draft(read.document, (), read.document.data, BenchDescription))
+
+
+def _built(source: Source, description: BenchDescription | None) -> tuple[Bench | None, tuple[Problem, ...]]:
+    bench, spot = None, Spot()
+    if description is not None:
+        bench = build_bench(spot, description, source.path)
+        source.reading.keep(source.document, spot.findings)
+    problems = source.reading.sorted_problems()
+    if bench is None or any(problem.severity == "error" for problem in problems):
+        return None, problems
+    return replace(bench, sources=source.reading.sources, warnings=problems), problems
+
+
+def build_bench(spot: Spot, description: BenchDescription, path: Path) -> Bench | None:
+    """Build a bench from its description, which may have holes; what is wrong is noted, and then there is none."""
+    step_ns = _step_ns(spot, description.step_s)
+    plant = build_plant(spot.inner("plant"), description.plant, step_ns) if description.plant is not None else None
+    bus = build_bus(spot.inner("bus"), description.bus, step_ns) if description.bus is not None else None
+    ecu, ecu_messages = description.ecu, EcuMessages()
+    if bus is not None and ecu is not None:
+        ecu_messages = build_ecu_messages(spot.inner("ecu"), ecu, bus)
+    whole = all(part is not None for part in (description.initial, description.inputs, description.loop, ecu))
+    if plant is None or bus is None or not whole:
         return None
-    file = Place(reading, document, ())
-    settings = _settings(file)
-    step_ns = settings.step_ns if settings is not None else MILLISECOND_NS  # so that the rest can be checked
-    plant = assemble_plant(file.inner("plant"), step_ns) if _is_group(file, "plant") else None
-    bus = assemble_bus(file.inner("bus"), step_ns) if _is_group(file, "bus") else None
-    ecu_messages = assemble_ecu_messages(file.inner("ecu"), bus) if bus is not None else EcuMessages()
-    if settings is None or plant is None or bus is None or reading.problems:
-        return None
+    initial = description.initial.model_dump()
     return Bench(
-        name=settings.name,
+        name=description.name,
         path=path,
         step_ns=step_ns,
         plant=plant,
         parameters=plant.parameters,
         parameter_row=pack(plant.parameters),
         tables=plant.tables,
-        initial=settings.initial,
-        state_row=initial_state(plant.parameters, settings.initial),
-        input_row=settings.input_row,
+        initial=initial,
+        state_row=initial_state(plant.parameters, initial),
+        input_row=_input_row(description.inputs),
         interface=bus.interface,
         receive=bus.receive,
         send=bus.send,
         safe=bus.safe,
-        loop=settings.loop,
-        ecu=settings.ecu,
-        sources=reading.sources,
+        loop=description.loop,
+        ecu=ecu,
+        sources={},
         commands=bus.commands,
         reports=bus.reports,
         ecu_messages=ecu_messages,
+        description=description,
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Settings:
-    name: str
-    step_ns: int
-    initial: dict[str, float]
-    input_row: NDArray[np.float64]
-    loop: LoopSettings
-    ecu: EcuSettings
+def _input_row(written: Mapping[str, Any]) -> NDArray[np.float64]:
+    row = np.array([signal.default for signal in INPUTS])
+    for index, value in signal_values(written):
+        row[index] = value
+    return row
 
 
-def _settings(file: Place) -> _Settings | None:
-    """Check what is neither plant nor bus."""
-    top = file.take(BenchFile)
-    initial = _section(file.inner("initial"), InitialSection)
-    loop, ecu = _section(file.inner("loop"), LoopSettings), _section(file.inner("ecu"), EcuSettings)
-    input_row = np.array([signal.default for signal in INPUTS])
-    for index, value in signal_values(file.inner("inputs"), {}):
-        input_row[index] = value
-    if top is None or initial is None or loop is None or ecu is None:
-        return None
-    return _Settings(top.name, _step_ns(file, top.step_s), initial.model_dump(), input_row, loop, ecu)
-
-
-def _step_ns(file: Place, step_s: float) -> int:
+def _step_ns(spot: Spot, step_s: float | None) -> int:
+    """Return the step; for a hole the usual one, so that the rest can be checked."""
+    if step_s is None:
+        return MILLISECOND_NS
     step_ns = round(step_s * SECOND_NS)
     if step_ns == 0 or abs(step_ns - step_s * SECOND_NS) > 1e-3:
-        file.note("step_s", text=f"step_s must be a whole number of nanoseconds, not {step_s!r}")
+        spot.note("step_s", text=f"step_s must be a whole number of nanoseconds, not {step_s!r}")
     return max(step_ns, 1)
-
-
-def _section(place: Place, model: type[Description]) -> Description | None:
-    """Check a section that may be left out; one that is no group has been told so."""
-    data = place.data()
-    if not isinstance(data, dict | None):
-        return None
-    return place.reading.check(place.document, place.location, data or {}, model)
-
-
-def _is_group(file: Place, key: str) -> bool:
-    return isinstance(file.inner(key).data(), dict)

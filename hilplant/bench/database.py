@@ -1,15 +1,17 @@
-"""The bus database of a bench: its messages by name, and its mistakes where they are."""
+"""The bus database of a bench: its messages by name."""
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from hilplant import resources
 from hilplant.bus.database import DatabaseError, load_database
-from hilplant.checked_yaml.place import Place
-from hilplant.checked_yaml.problems import Problem, suggestion
+from hilplant.checked_yaml.problems import suggestion
 from hilplant.checked_yaml.reading import shown
+from hilplant.checked_yaml.spot import Spot
 
 _LINE = re.compile(r"\bat line (\d+)")
 
@@ -23,38 +25,42 @@ class Database:
         self._names = Counter(message.name for message in messages)
         self._file = file
 
-    def has(self, name: str) -> bool:
-        """Whether there is a message of this name."""
-        return name in self._messages
+    def missing(self, names: Iterable[str]) -> list[str]:
+        """Return those of the names that no message has."""
+        return [name for name in names if name not in self._messages]
 
-    def message(self, place: Place) -> Any | None:
+    def message(self, spot: Spot) -> Any | None:
         """Return the message that a group of the bench is named after; None, noted, when there is not one."""
-        if self._names[place.name] > 1:
-            place.note(text=f"{self._file} has {self._names[place.name]} messages '{place.name}'; keep one")
+        if self._names[spot.name] > 1:
+            spot.note(text=f"{self._file} has {self._names[spot.name]} messages '{spot.name}'; keep one")
             return None
-        if place.name not in self._messages:
-            text = f"{self._file} has no message '{place.name}'{suggestion(place.name, self._messages)}"
-            place.note(text=text)
-        return self._messages.get(place.name)
+        if spot.name not in self._messages:
+            text = f"{self._file} has no message '{spot.name}'{suggestion(spot.name, self._messages)}"
+            spot.note(text=text)
+        return self._messages.get(spot.name)
 
 
-def read_database(place: Place) -> Database | None:
-    """Read the database that is named at a place of the bench."""
-    path = place.reading.referred_path(place.document, place.location)
-    if path is None:
+def read_database(spot: Spot, name: str | None) -> Database | None:
+    """Read the database that is named at a spot of the bench; what is wrong with it is noted there."""
+    if name is None:
         return None
+    path = resources.find(name, Path())
     try:
-        messages = load_database(path).messages
-        place.reading.sources[shown(path)] = path.read_text(encoding="utf-8", errors="replace")
+        if path is None:
+            raise DatabaseError(f"no file '{name}'")
+        return _read(path, path.stat().st_mtime_ns)
     except DatabaseError as error:
-        _note(place, path, error)
-        return None
-    return Database(messages, shown(path))
+        spot.note(text=str(error))
+    return None
 
 
-def _note(place: Place, path: Path, error: DatabaseError) -> None:
-    """Say what is wrong at the database's line if the parser names it, else where the bench does."""
-    if found := _LINE.search(str(error)):
-        place.reading.problems.append(Problem(shown(path), int(found[1]), str(error)))
-    else:
-        place.note(text=str(error))
+def line_of(error: str) -> int | None:
+    """Return the line of the database that an error of its parser names."""
+    found = _LINE.search(error)
+    return int(found[1]) if found else None
+
+
+@lru_cache(maxsize=4)
+def _read(path: Path, changed_ns: int) -> Database:
+    """Read a database once for all phases; `changed_ns` tells a changed file from its former self."""
+    return Database(load_database(path).messages, shown(path))

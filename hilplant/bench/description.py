@@ -1,20 +1,21 @@
-"""What a bench file may say: one model for each of its sections, which are checked one by one.
+"""What a bench says, all of it: the description from which a bench is built, with the files that it names inside.
 
-Sections are separate so that a mistake in one does not hide the mistakes in another. Cross-checks against the
-database, the step or other files are in :mod:`hilplant.bench.mapping` and :mod:`hilplant.bench.assembly`. The plant's
-sections are in :mod:`hilplant.bench.plant_description`, the ECU's in :mod:`hilplant.bench.ecu_description`.
+Cross-checks against the database, the step or the mechanics are made while the bench is built. The plant's sections
+are in :mod:`hilplant.bench.plant_description`, the bus's in :mod:`hilplant.bench.bus_description`, the ECU's in
+:mod:`hilplant.bench.ecu_description`.
 """
 
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from hilplant.checked_yaml.checked import Checked, Name, NotNegative, Real, wrong
+from hilplant.bench.bus_description import BusSection
+from hilplant.bench.ecu_description import EcuSettings
+from hilplant.bench.plant_description import PlantSection
+from hilplant.bench.signal_names import InputValues
+from hilplant.checked_yaml.checked import Checked, Container, MayBeHole, Name, wrong
 from hilplant.units import TURN_RAD
 
-Group = dict[str, Any]
-OptionalGroup = Annotated[Group, Field(default_factory=dict)]
-Messages = Annotated[dict[str, Group], Field(default_factory=dict)]
 Pauses = Annotated[tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]], Field(strict=False)]
 Whole = Annotated[int, Field(ge=0)]
 
@@ -22,95 +23,63 @@ Whole = Annotated[int, Field(ge=0)]
 LONGEST_STEP_S = 0.02
 
 
-class BenchFile(Checked):
-    """The outermost keys."""
-
-    name: Name
-    extends: Name | None = None
-    step_s: Annotated[float, Field(gt=0, le=LONGEST_STEP_S)] = 0.001
-    plant: Group
-    bus: Group
-    initial: OptionalGroup
-    inputs: OptionalGroup
-    loop: OptionalGroup
-    ecu: OptionalGroup
-
-
 class InitialSection(Checked):
     """The state at tick 0."""
 
-    crank_angle_rad: Annotated[float, Field(ge=0, lt=TURN_RAD)] = 0.0
-    motor_speed_rad_s: Annotated[float, Field(ge=-2000, le=2000)] = 0.0
-    current_a: Annotated[float, Field(ge=-500, le=500)] = 0.0
-
-
-class BusSection(Checked):
-    """Outermost keys of the bus."""
-
-    interface: Group
-    database: Name
-    receive: Messages
-    send: Messages
-    safe: OptionalGroup
-
-
-class InterfaceSection(Checked):
-    """Arguments of the CAN interface, passed on as they are; only its name is known here."""
-
-    model_config = ConfigDict(extra="allow")
-
-    interface: Name
-
-
-class SignalEntry(Checked):
-    """How one signal of the database relates to one of the plant.
-
-    The plant's value is the database's physical value times `scale` plus `offset`, in both directions.
-    """
-
-    signal: Name
-    scale: Real = 1.0
-    offset: Real = 0.0
-    choices: dict[str, str] | None = None
-    invert: bool = False
-
-    @model_validator(mode="after")
-    def _scale_not_zero(self) -> Self:
-        if self.scale == 0.0:
-            raise wrong("scale", text="scale must not be 0")
-        return self
-
-
-class ReceiveEntry(Checked):
-    """A message that the plant takes in; without `timeout_ms` it may stay away for ten cycle times."""
-
-    signals: Annotated[Group, Field(min_length=1)]
-    timeout_ms: NotNegative | None = None
-    protection: Group | None = None
-
-
-class SendEntry(Checked):
-    """A message that the plant sends; by default at the database's cycle time; 0: on change only."""
-
-    signals: Annotated[Group, Field(min_length=1)]
-    period_ms: NotNegative | None = None
-    offset_ms: NotNegative = 0.0
-    on_change: Annotated[list[str], Field(default_factory=list)]
-    protection: Group | None = None
+    crank_angle_rad: Annotated[float, Field(ge=0, lt=TURN_RAD)] = Field(
+        default=0.0, description="crank angle from park"
+    )
+    motor_speed_rad_s: Annotated[float, Field(ge=-2000, le=2000)] = Field(
+        default=0.0, description="speed of the motor shaft"
+    )
+    current_a: Annotated[float, Field(ge=-500, le=500)] = Field(default=0.0, description="armature current")
 
 
 class LoopSettings(Checked):
     """How the loop runs, and how it treats its interface."""
 
-    on_overrun: Literal["count", "degrade", "stop"] = "count"
-    priority: Annotated[int, Field(ge=1, le=99)] = 80
-    cpu: Whole | None = None
-    frames_per_tick: Annotated[int, Field(ge=1)] = 100
-    queue_frames: Annotated[int, Field(ge=1)] = 64
-    reopen_ms: Pauses = (100, 2000)
+    on_overrun: Literal["count", "degrade", "stop"] = Field(
+        default="count",
+        description="what a late tick does: it is counted, or the mode becomes degraded, or the run stops",
+    )
+    priority: Annotated[int, Field(ge=1, le=99)] = Field(
+        default=80, description="SCHED_FIFO priority, where it is permitted"
+    )
+    cpu: Whole | None = Field(default=None, description="processor that the loop is pinned to")
+    frames_per_tick: Annotated[int, Field(ge=1)] = Field(
+        default=100, description="most frames taken in during one tick"
+    )
+    queue_frames: Annotated[int, Field(ge=1)] = Field(
+        default=64, description="most frames waiting for a full interface"
+    )
+    reopen_ms: Pauses = Field(
+        default=(100, 2000), description="first and longest pause before a lost interface is tried again"
+    )
 
     @model_validator(mode="after")
     def _reopen_grows(self) -> Self:
         if self.reopen_ms[0] > self.reopen_ms[1]:
             raise wrong("reopen_ms", text="reopen_ms must be [first pause, longest pause], rising")
         return self
+
+
+class BenchDescription(Container):
+    """One bench: the plant, its bus, the mapping between them, rates and timeouts."""
+
+    model_config = ConfigDict(title="hilplant bench")
+
+    name: Annotated[Name, MayBeHole] = Field(description="what the bench is called in messages and recordings")
+    extends: Annotated[Name | None, MayBeHole] = Field(
+        default=None, description="bench from which everything is taken that is not given here"
+    )
+    step_s: Annotated[float, Field(gt=0, le=LONGEST_STEP_S), MayBeHole] = Field(
+        default=0.001, description="step of the plant and period of the loop, whole nanoseconds"
+    )
+    plant: PlantSection = Field(description="what stands on the bench")
+    initial: InitialSection = Field(default=InitialSection(), description="state at tick 0")
+    inputs: InputValues = Field(
+        default={}, description="inputs of the plant until a frame or a scenario says something else"
+    )
+    bus: BusSection = Field(description="interface, database and mapping")
+    loop: LoopSettings = Field(default=LoopSettings(), description="the real-time loop")
+    ecu: EcuSettings = Field(default=EcuSettings(), description="the stand-in relay ECU")

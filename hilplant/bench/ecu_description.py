@@ -1,10 +1,10 @@
 """What a bench may say about the stand-in relay ECU: its messages, times and thresholds."""
 
-from typing import Annotated, Self
+from typing import Annotated, ClassVar, Self
 
 from pydantic import Field, model_validator
 
-from hilplant.bench.description import Messages
+from hilplant.bench.bus_description import EcuStatusMessageEntry, StalkMessageEntry
 from hilplant.checked_yaml.checked import Checked, NotNegative, Positive, wrong
 
 SixPauses = Annotated[tuple[Positive, ...], Field(strict=False, min_length=6, max_length=6)]
@@ -14,22 +14,30 @@ Count = Annotated[int, Field(ge=1)]
 class ControllerSettings(Checked):
     """Times and thresholds of the controller; `docs/ecu.md` says where each default comes from."""
 
-    pauses_s: SixPauses = (1.0, 2.0, 4.0, 7.0, 12.0, 18.0)
-    wash_wipes: Count = 3
-    debounce_s: NotNegative = 0.02
-    turn_timeout_s: Positive = 10.0
-    leave_timeout_s: Positive = 2.0
-    bounce_edges: Annotated[int, Field(ge=3)] = 10
-    bounce_window_s: Positive = 1.0
-    stall_current_a: Positive = 10.0
-    stall_s: Positive = 0.5
-    brown_out_v: NotNegative = 6.0
-    resume_v: NotNegative = 8.0
-    resume_s: NotNegative = 0.5
-    tries: Count = 3
-    retry_pause_s: NotNegative = 2.0
-    settle_s: Positive = 0.5
-    rests_open: bool = False
+    pauses_s: SixPauses = Field(
+        default=(1.0, 2.0, 4.0, 7.0, 12.0, 18.0), description="pauses of the intermittent stage"
+    )
+    wash_wipes: Count = Field(default=3, description="wipes after the wash button is released")
+    debounce_s: NotNegative = Field(default=0.02, description="shortest opening of the park contact that is no bounce")
+    turn_timeout_s: Positive = Field(default=10.0, description="longest drive without coming to park")
+    leave_timeout_s: Positive = Field(default=2.0, description="longest drive with the park contact closed")
+    bounce_edges: Annotated[int, Field(ge=3)] = Field(
+        default=10, description="changes of the park contact within the window that are a fault"
+    )
+    bounce_window_s: Positive = Field(
+        default=1.0, description="window in which changes of the park contact are counted"
+    )
+    stall_current_a: Positive = Field(default=10.0, description="current from which the motor counts as stalled")
+    stall_s: Positive = Field(default=0.5, description="how long that current must flow")
+    brown_out_v: NotNegative = Field(default=6.0, description="supply voltage below which the relays go off")
+    resume_v: NotNegative = Field(default=8.0, description="supply voltage from which it goes on")
+    resume_s: NotNegative = Field(default=0.5, description="how long the supply must stay up before")
+    tries: Count = Field(default=3, description="drives that may fail before the ECU is locked out")
+    retry_pause_s: NotNegative = Field(default=2.0, description="pause before another try")
+    settle_s: Positive = Field(
+        default=0.5, description="rest in park after which faults are forgotten; also the shortest turn that counts"
+    )
+    rests_open: bool = Field(default=False, description="whether the parked wiper lies where the park contact is open")
 
     @model_validator(mode="after")
     def _thresholds_in_order(self) -> Self:
@@ -44,6 +52,9 @@ class ControllerSettings(Checked):
 class EcuSettings(ControllerSettings):
     """The stand-in relay ECU: how often it decides, and its messages beside those of the plant's mapping."""
 
-    period_ms: Positive = 5.0
-    receive: Messages
-    send: Messages
+    holes_inside: ClassVar[bool] = True
+    survives: ClassVar[bool] = True
+
+    period_ms: Positive = Field(default=5.0, description="how often the ECU decides")
+    receive: dict[str, StalkMessageEntry] = Field(default={}, description="messages of the stalk")
+    send: dict[str, EcuStatusMessageEntry] = Field(default={}, description="messages in which the ECU tells of itself")

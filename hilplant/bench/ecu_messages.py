@@ -1,15 +1,12 @@
 """The ECU's own messages in a bench: the stalk that it hears, and what it tells of itself."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
-from hilplant.bench.bus import Bus, receive_entry, send_entry
-from hilplant.bench.database import Database
+from hilplant.bench.bus import Bus, MessageBuilder
+from hilplant.bench.ecu_description import EcuSettings
 from hilplant.bus.codec import ReceivedMessage, SentMessage
-from hilplant.checked_yaml.place import Place
+from hilplant.checked_yaml.spot import Spot
 from hilplant.signals import ECU_HEARD, ECU_SAID, ECU_STATUS, STALK
-
-_NO_STEP_NS = 1  # the ECU sends when it decides, so every period will do
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,33 +17,20 @@ class EcuMessages:
     status: tuple[SentMessage, ...] = ()
 
 
-def assemble_ecu_messages(ecu: Place, bus: Bus) -> EcuMessages:
+def build_ecu_messages(spot: Spot, ecu: EcuSettings, bus: Bus) -> EcuMessages:
     """Build what is sound of the ECU's own messages; everything else is noted."""
     if bus.database is None:
         return EcuMessages()
-    heard, said = len(ECU_HEARD) - len(STALK), len(ECU_SAID) - len(ECU_STATUS)
-    stalk, status = [], []
-    for place in _groups(ecu.inner("receive"), bus.database):
-        if received := receive_entry(place, bus.database, ECU_HEARD, heard):
-            stalk.append(received[1])
-    for place in _groups(ecu.inner("send"), bus.database):
-        if sent := send_entry(place, bus.database, ECU_SAID, _NO_STEP_NS, said):
-            status.append(sent[1])
-    _refuse_the_plants(ecu, bus, [*stalk, *status])
+    heard = MessageBuilder(bus.database, ECU_HEARD, len(ECU_HEARD) - len(STALK))
+    said = MessageBuilder(bus.database, ECU_SAID, len(ECU_SAID) - len(ECU_STATUS))
+    received = [heard.received(spot.inner("receive", name), entry) for name, entry in (ecu.receive or {}).items()]
+    sent = [said.sent(spot.inner("send", name), entry) for name, entry in (ecu.send or {}).items()]
+    stalk, status = [pair[1] for pair in received if pair], [pair[1] for pair in sent if pair]
+    _refuse_the_plants(spot, bus, [*stalk, *status])
     return EcuMessages(tuple(stalk), tuple(status))
 
 
-def _groups(messages: Place, database: Database) -> Iterator[Place]:
-    """Return the groups under the names of messages, without those inherited for a database that is not used here."""
-    data = messages.data()
-    for name, group in data.items() if isinstance(data, dict) else ():
-        place = messages.inner(name)
-        inherited = place.document.place(place.location)[0] != place.document.file
-        if isinstance(group, dict) and not (inherited and not database.has(name)):
-            yield place
-
-
-def _refuse_the_plants(ecu: Place, bus: Bus, own: list[ReceivedMessage | SentMessage]) -> None:
+def _refuse_the_plants(ecu: Spot, bus: Bus, own: list[ReceivedMessage | SentMessage]) -> None:
     """Refuse identifiers that the plant's mapping has, or that occur twice."""
     plants: list[ReceivedMessage | SentMessage] = [*bus.receive, *bus.send]
     taken = {(message.identifier, message.extended): message.name for message in plants}

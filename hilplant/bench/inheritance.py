@@ -1,18 +1,16 @@
 """`extends`: a bench file over another, section by section."""
 
-from pathlib import Path
-
+from hilplant.bench.database import Database
 from hilplant.checked_yaml.reading import Reading
 from hilplant.checked_yaml.yaml_reader import Document, Location
 
 
-def read_bench_file(reading: Reading, path: Path) -> Document:
-    """Read a bench file and what it extends.
+def read_bases(reading: Reading, document: Document) -> Document:
+    """Read what a bench file extends, and return it over that.
 
     Sections are joined key by key; a key that is given replaces the inherited one whole, so that a load or an
     interface does not keep arguments of the one that it replaces.
     """
-    document = reading.named_file(path)
     seen = {document.file}
     while isinstance(document.data, dict) and isinstance(document.data.get("extends"), str):
         base = reading.referred_file(document, ("extends",))
@@ -24,6 +22,31 @@ def read_bench_file(reading: Reading, path: Path) -> Document:
         seen.add(base.file)
         document = _joined(base, document)
     return document
+
+
+def drop_strangers(reading: Reading, document: Document, database: Database) -> None:
+    """Leave out inherited messages that a database does not have.
+
+    Those of the ECU are simply not there then. Those of the plant would be missed: they are one problem.
+    """
+    for section in ("ecu", "bus"):
+        for direction in ("receive", "send"):
+            location = (section, direction)
+            if document.place(location)[0] == document.file or not isinstance(document.at(location), dict):
+                continue
+            messages = document.at(location)
+            strangers = database.missing(messages)
+            document.replace(location, {key: inner for key, inner in messages.items() if key not in strangers})
+            if strangers and section == "bus":
+                _note_strangers(reading, document, direction, strangers)
+
+
+def _note_strangers(reading: Reading, document: Document, direction: str, strangers: list[str]) -> None:
+    base = document.place(("bus", direction))[0]
+    shown = f"{', '.join(strangers[:3])}{' ...' if len(strangers) > 3 else ''}"
+    text = f"{direction} is inherited from {base} and names {shown}, which this database has not"
+    text += f"; give your own {direction}"
+    reading.note(document, ("bus", "database"), text)
 
 
 def _joined(base: Document, over: Document) -> Document:

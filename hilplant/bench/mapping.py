@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hilplant.bench.description import ReceiveEntry, SendEntry, SignalEntry
+from hilplant.bench.bus_description import ReceivedEntry, SentEntry, SignalEntry
 from hilplant.bus.mapping import MappingError, SignalMapping, link
 from hilplant.bus.protection import Protection, ProtectionError
-from hilplant.checked_yaml.place import Place
 from hilplant.checked_yaml.problems import suggestion
+from hilplant.checked_yaml.spot import Spot
 from hilplant.declaration import Signal
 
 
@@ -26,46 +26,49 @@ class MappedMessage:
 
 
 def map_message(
-    place: Place, message: Any, entry: ReceiveEntry | SendEntry, signals: Sequence[Signal]
+    spot: Spot, message: Any, entry: ReceivedEntry | SentEntry, signals: Sequence[Signal]
 ) -> MappedMessage | None:
     """Look up and check every mapped signal; None when any of them cannot work."""
-    mappings = [_mapping(place, message, name, written, signals) for name, written in entry.signals.items()]
+    mappings = [
+        _mapping(spot, message, (name, written), signals) for name, each in entry.signals.items() for written in each
+    ]
     sound = tuple(mapping for mapping in mappings if mapping is not None)
     try:
-        settings = entry.protection
+        settings = entry.protection.settings() if entry.protection is not None else None
         protection = Protection.from_settings(settings, message.length) if settings is not None else None
     except ProtectionError as error:
-        place.note("protection", text=f"{message.name}: {error}")
+        spot.note("protection", text=f"{message.name}: {error}")
         return None
     return MappedMessage(message, sound, protection) if len(sound) == len(mappings) else None
 
 
-def _mapping(place: Place, message: Any, name: str, written: Any, signals: Sequence[Signal]) -> SignalMapping | None:
-    location = (*place.location, "signals", name)
-    data = {"signal": written} if isinstance(written, str) else written
-    entry = place.reading.check(place.document, location, data, SignalEntry)
-    if entry is None or not _known(place, message, name, entry.signal, signals):
+def _mapping(
+    spot: Spot, message: Any, named: tuple[str, SignalEntry | None], signals: Sequence[Signal]
+) -> SignalMapping | None:
+    name, entry = named
+    if entry is None or not _known(spot, message, (name, entry.signal), signals):
         return None
     mapping = SignalMapping(name, entry.signal, entry.scale, entry.offset, entry.choices, entry.invert)
     try:
         link(message, mapping, signals)
     except MappingError as error:
-        place.note("signals", name, text=f"{message.name}.{name}: {error.text}")
+        spot.note("signals", name, text=f"{message.name}.{name}: {error.text}")
         return None
     return mapping
 
 
-def _known(place: Place, message: Any, name: str, plant_name: str, signals: Sequence[Signal]) -> bool:
+def _known(spot: Spot, message: Any, ends: tuple[str, str], signals: Sequence[Signal]) -> bool:
     """Say whether both ends of a mapping exist; note what was probably meant where one does not."""
+    name, plant_name = ends
     in_database = [signal.name for signal in message.signals]
     in_plant = [signal.name for signal in signals]
     if name not in in_database:
-        place.note("signals", name, text=f"{message.name} has no signal '{name}'{suggestion(name, in_database)}")
+        spot.note("signals", name, text=f"{message.name} has no signal '{name}'{suggestion(name, in_database)}")
     elif in_database.count(name) > 1:
-        place.note("signals", name, text=f"{message.name} has {in_database.count(name)} signals '{name}'; keep one")
+        spot.note("signals", name, text=f"{message.name} has {in_database.count(name)} signals '{name}'; keep one")
     elif plant_name not in in_plant:
         text = f"the plant has no signal '{plant_name}' here{suggestion(plant_name, in_plant)}"
-        place.note("signals", name, text=text)
+        spot.note("signals", name, text=text)
     else:
         return True
     return False

@@ -6,22 +6,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bench.load_files import PolynomialFile, TorqueFile
-from hilplant.bench.motor_model import motor_model, row_of_networks
+from hilplant.bench.motor_model import build_motor_model, row_of_networks
 from hilplant.bench.parts import MotorFile
 from hilplant.bench.plant_description import (
     AnyLoad,
     BladeEntry,
     BladesSection,
-    LoadChoice,
     ParkSwitchSection,
     PlantSection,
     PolynomialLoad,
     WholeWiper,
 )
 from hilplant.bench.screen_parts import ScreenFile
-from hilplant.bench.trained_load import Around, TrainedLoad, keeps_its_bounds, read_trained_load
-from hilplant.bench.wiper import SIDES, Mechanics, Surroundings, read_mechanics
-from hilplant.checked_yaml.place import Place
+from hilplant.bench.trained_load import Around, TrainedLoad, check_bounds, trained_load
+from hilplant.bench.wiper import SIDES, Mechanics, Surroundings, build_mechanics
+from hilplant.checked_yaml.spot import Spot
 from hilplant.failure import Failure
 from hilplant.mechanics.coefficients import Aerodynamics, check_aerodynamics
 from hilplant.models.circuit import CIRCUITS
@@ -47,87 +46,60 @@ class Plant:
     load_file: TorqueFile | PolynomialFile | None = None
 
 
-def assemble_plant(place: Place, step_ns: int) -> Plant | None:
-    """Build the plant; a part that is wrong is noted, and the others are checked all the same."""
-    place.take(PlantSection)
-    motor = _motor(place.inner("motor"))
-    load = _load(place)
-    screen, blades = _screen(place.inner("screen")), _blades(place.inner("blades"))
-    park_switch = _park_switch(place.inner("park_switch"))
-    complete = not isinstance(load, WholeWiper) or _has_screen_and_blades(place)
-    mechanics = read_mechanics(place.inner("linkage"), _surroundings(place, load, screen, blades))
+def build_plant(spot: Spot, plant: PlantSection, step_ns: int) -> Plant | None:
+    """Build the plant; what is wrong is noted, and the other parts are checked all the same."""
+    motor, load, park_switch, blades = plant.motor, plant.load, plant.park_switch, _blades(spot, plant.blades)
+    complete = not isinstance(load, WholeWiper) or _has_screen_and_blades(spot, plant)
+    around = _surroundings(load, plant.screen, blades)
+    mechanics = build_mechanics(spot, plant.linkage, around) if plant.linkage is not None else None
     if motor is None or mechanics is None or load is None or park_switch is None or not complete:
         return None
-    trained = read_trained_load(place.inner("load"), load, Around(mechanics, screen, blades))
-    mover = motor_model(place, motor, step_ns)
-    if trained is None or mover is None:
+    trained = trained_load(spot.inner("load"), load, Around(mechanics, plant.screen, blades))
+    mover = build_motor_model(spot.inner("motor_model"), plant.motor_model, motor, step_ns)
+    if trained is None:
         return None
-    record = _load_record(load, trained, screen, blades)
+    record = _load_record(load, trained, plant.screen, blades)
     left, right = mechanics.wiper.left.arm, mechanics.wiper.right.arm
     networks = row_of_networks(trained.numbers, mover.numbers)
     parameters = Parameters(
         step_ns / SECOND_NS, motor.record(), _contact(park_switch, step_ns), record, left, right, mover.place, networks
     )
-    if not keeps_its_bounds(place.inner("load"), trained, parameters, mechanics.table):
+    check_bounds(spot.inner("load"), trained, parameters, mechanics.table)
+    return Plant(parameters, mechanics.table, motor, load, plant.screen, blades, mechanics, park_switch, trained.file)
+
+
+def _blades(spot: Spot, section: BladesSection | None) -> Blades | None:
+    if section is None or section.left is None or section.right is None:
         return None
-    return Plant(parameters, mechanics.table, motor, load, screen, blades, mechanics, park_switch, trained.file)
+    sound = [_has_sound_air(spot.inner("blades", side), getattr(section, side)) for side in SIDES]
+    return (section.left, section.right) if all(sound) else None
 
 
-def _motor(place: Place) -> MotorFile | None:
-    file = place.referred_file()
-    return file.take(MotorFile) if file is not None else None
-
-
-def _screen(place: Place) -> ScreenFile | None:
-    file = place.referred_file()
-    return file.take(ScreenFile) if file is not None else None
-
-
-def _blades(place: Place) -> Blades | None:
-    if not isinstance(place.data(), dict) or place.take(BladesSection) is None:
-        return None
-    left, right = (_blade(place.inner(side)) for side in SIDES)
-    return (left, right) if left is not None and right is not None else None
-
-
-def _blade(place: Place) -> BladeEntry | None:
-    entry = place.take(BladeEntry)
-    if entry is None:
-        return None
+def _has_sound_air(spot: Spot, entry: BladeEntry) -> bool:
     try:
-        check_aerodynamics(f"{place.name} blade", _air(entry))
+        check_aerodynamics(f"{spot.name} blade", _air(entry))
     except Failure as error:
-        place.note(text=str(error))
-        return None
-    return entry
+        spot.note(text=str(error))
+        return False
+    return True
 
 
 def _air(entry: BladeEntry) -> Aerodynamics:
     return Aerodynamics(entry.area_m2, entry.drag, entry.lift)
 
 
-def _load(plant: Place) -> AnyLoad | None:
-    data = plant.inner("load").data()
-    if not isinstance(data, dict):
-        return None
-    choice = plant.reading.check(plant.document, plant.location, {"load": data}, LoadChoice)
-    return choice.load if choice is not None else None
-
-
-def _has_screen_and_blades(plant: Place) -> bool:
-    kind = plant.inner("load", "model").data()
-    missing = [key for key in ("screen", "blades") if plant.inner(key).data() is None]
+def _has_screen_and_blades(spot: Spot, plant: PlantSection) -> bool:
+    missing = [key for key in ("screen", "blades") if getattr(plant, key) is None]
     for key in missing:
-        written = (*plant.location, key) in plant.document.places
-        plant.note(key if written else "load", text=f"the {kind} load needs {key} beside it")
+        written = key in plant.model_fields_set
+        spot.miss(key if written else "load", text=f"the {plant.load.model} load needs {key} beside it")
     return not missing
 
 
-def _surroundings(plant: Place, load: AnyLoad | None, screen: ScreenFile | None, blades: Blades | None) -> Surroundings:
-    """Return what is known; what is missing is noted, and the linkage is checked all the same."""
+def _surroundings(load: AnyLoad | None, screen: ScreenFile | None, blades: Blades | None) -> Surroundings:
+    """Return what is known; what is missing has been noted, and the linkage is checked all the same."""
     left, right = (_air(entry) for entry in blades) if blades is not None else (Aerodynamics(), Aerodynamics())
     return Surroundings(
-        blades=plant.inner("blades"),
         screen_angle_rad=screen.angle_rad if screen is not None else 0.0,
         air=(left, right),
         points=load.points if isinstance(load, WholeWiper) else 1,
@@ -147,10 +119,6 @@ def _load_record(load: AnyLoad, trained: TrainedLoad, screen: ScreenFile | None,
         left_blade=left,
         right_blade=right,
     )
-
-
-def _park_switch(place: Place) -> ParkSwitchSection | None:
-    return place.take(ParkSwitchSection) if isinstance(place.data(), dict) else None
 
 
 def _contact(section: ParkSwitchSection, step_ns: int) -> ParkSwitch:

@@ -2,83 +2,81 @@
 
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, WithJsonSchema, field_validator, model_validator
 
-from hilplant.bench.parts import WithAssumptions
-from hilplant.checked_yaml.checked import Checked, Name, NotNegative, wrong
+from hilplant.bench.load_files import PolynomialFile, TorqueFile
+from hilplant.bench.motor_network_file import MotorNetworkFile
+from hilplant.bench.parts import LinkageFile, MotorFile, Referred, WithAssumptions
+from hilplant.bench.screen_parts import ScreenFile
+from hilplant.checked_yaml.checked import Checked, Container, MayBeHole, NotNegative, wrong
 
-Group = dict[str, Any]
 Angle = Annotated[float, Field(gt=0, lt=360)]
+_PAIR = {"type": "array", "prefixItems": [{"type": "number"}, {"type": "number"}], "minItems": 2, "maxItems": 2}
+#: A number, or pairs of arm angle [deg] and number.
+Coefficient = Annotated[Any, WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "array", "items": _PAIR}]})]
 
 
-class PlantSection(Checked):
-    """What stands on the bench."""
+class OdeMotor(Checked):
+    """The physical model, (3.30) to (3.35)."""
 
-    motor: Name
-    motor_model: Group | None = None
-    linkage: Name
-    screen: Name | None = None
-    blades: Group | None = None
-    load: Group
-    park_switch: Group
+    model: Literal["ode"] = Field(description="name of the model")
+
+
+class NarxMotor(Checked):
+    """A network with feedback, section 6.4.3; the physical model stands by."""
+
+    model: Literal["narx"] = Field(description="name of the model")
+    file: Annotated[MotorNetworkFile, Referred()] = Field(description="file from hilplant train motor")
 
 
 class NoLoad(Checked):
     """Nothing but the linkage, without weight."""
 
-    model: Literal["none"]
+    model: Literal["none"] = Field(description="name of the model")
 
 
 class PolynomialLoad(Checked):
     """No-load torque fitted over angle and speed, (6.1)-(6.3): the published one, or that of a trained file."""
 
-    model: Literal["polynomial"]
-    c1: NotNegative | None = None
-    c2: NotNegative | None = None
-    file: Name | None = None
+    model: Literal["polynomial"] = Field(description="name of the model")
+    c1: NotNegative | None = Field(default=None, description="first constant of (6.3)")
+    c2: NotNegative | None = Field(default=None, description="second constant of (6.3)")
+    file: Annotated[PolynomialFile | None, Referred()] = Field(
+        default=None, description="file from hilplant train polynomial, instead of c1 and c2"
+    )
 
     @model_validator(mode="after")
     def _one_or_the_other(self) -> Self:
+        filed = "file" in self.model_fields_set
         for key in ("c1", "c2"):
-            if (getattr(self, key) is None) == (self.file is None):
-                text = f"key '{key}' is missing" if self.file is None else f"{key} is given beside the file that has it"
-                raise wrong("model" if self.file is None else key, text=text)
+            if (getattr(self, key) is None) != filed:
+                text = f"{key} is given beside the file that has it" if filed else f"key '{key}' is missing"
+                raise wrong(key if filed else "model", text=text)
         return self
 
 
 class WholeWiper(Checked):
     """A load that is the whole wiper; friction acts at `points` points of each blade."""
 
-    points: Annotated[int, Field(ge=1, le=64)] = 1
+    points: Annotated[int, Field(ge=1, le=64)] = Field(
+        default=1, description="at how many points of each blade friction acts; 1: at the arm's end"
+    )
 
 
 class ReducedLoad(WholeWiper):
     """The whole wiper, reduced to the crank."""
 
-    model: Literal["reduced"]
+    model: Literal["reduced"] = Field(description="name of the model")
 
 
 class NetworkLoad(WholeWiper):
     """A network trained for the whole wiper, and the reduced load where the network was not trained."""
 
-    model: Literal["network"]
-    file: Name
+    model: Literal["network"] = Field(description="name of the model")
+    file: Annotated[TorqueFile, Referred()] = Field(description="file from hilplant train torque")
 
 
 AnyLoad = NoLoad | PolynomialLoad | ReducedLoad | NetworkLoad
-
-
-class LoadChoice(Checked):
-    """The load, chosen by the name of its model."""
-
-    load: Annotated[AnyLoad, Field(discriminator="model")]
-
-
-class BladesSection(Checked):
-    """Both blades on their screen."""
-
-    left: Group
-    right: Group
 
 
 class BladeEntry(WithAssumptions):
@@ -87,11 +85,11 @@ class BladeEntry(WithAssumptions):
     Drag and lift are coefficients of (4.51), (4.52), each a number or pairs of arm angle [deg] and number.
     """
 
-    force_n: NotNegative
-    wear: NotNegative = 1.0
-    area_m2: NotNegative = 0.0
-    drag: Any = 0.0
-    lift: Any = 0.0
+    force_n: NotNegative = Field(description="with which the arm presses the blade on the screen")
+    wear: NotNegative = Field(default=1.0, description="factor on the blade's friction coefficient")
+    area_m2: NotNegative = Field(default=0.0, description="area of the blade in (4.51), (4.52)")
+    drag: Coefficient = Field(default=0.0, description="coefficient of (4.51); positive pushes forward")
+    lift: Coefficient = Field(default=0.0, description="coefficient of (4.52); positive lifts the blade off")
 
     @field_validator("drag", "lift", mode="before")
     @classmethod
@@ -120,15 +118,29 @@ def _is_pair(written: Any) -> bool:
     return isinstance(written, list) and len(written) == 2 and all(map(_is_number, written))
 
 
+class BladesSection(Container):
+    """Both blades on their screen."""
+
+    left: BladeEntry = Field(description="the left blade")
+    right: BladeEntry = Field(description="the right blade")
+
+
 class ParkSwitchSection(WithAssumptions):
     """Contact over the crank angle, and the circuit that it is part of."""
 
-    park_angle_deg: Annotated[float, Field(ge=0, lt=360)]
-    window_deg: Angle
-    hysteresis_deg: NotNegative = 0.0
-    bounce_ms: NotNegative = 0.0
-    circuit: Literal["digital", "mechanical", "depressed"] = "digital"
-    reverse_angle_deg: Angle | None = None
+    park_angle_deg: Annotated[float, Field(ge=0, lt=360)] = Field(description="crank angle of the window's middle")
+    window_deg: Angle = Field(description="width of the window in which the contact is closed")
+    hysteresis_deg: NotNegative = Field(
+        default=0.0, description="how much farther the crank turns until the contact opens"
+    )
+    bounce_ms: NotNegative = Field(default=0.0, description="for how long the contact bounces after each edge")
+    circuit: Literal["digital", "mechanical", "depressed"] = Field(
+        default="digital",
+        description="digital: the contact reports; mechanical, depressed: it carries the motor's current",
+    )
+    reverse_angle_deg: Angle | None = Field(
+        default=None, description="how far the depressed circuit turns the crank back"
+    )
 
     @model_validator(mode="after")
     def _window_within_turn(self) -> Self:
@@ -148,3 +160,17 @@ class ParkSwitchSection(WithAssumptions):
             text = "reverse_angle_deg must leave a gap: window_deg + reverse_angle_deg must be below 360"
             raise wrong("reverse_angle_deg", text=text)
         return self
+
+
+class PlantSection(Container):
+    """What stands on the bench."""
+
+    motor: Annotated[MotorFile, Referred()] = Field(description="parameter set of a motor")
+    motor_model: Annotated[OdeMotor | NarxMotor | None, Field(discriminator="model"), MayBeHole] = Field(
+        default=None, description="which model moves the motor; ode when left out"
+    )
+    linkage: Annotated[LinkageFile, Referred()] = Field(description="geometry with its arms, blades and masses")
+    screen: Annotated[ScreenFile | None, Referred()] = Field(default=None, description="windscreen: angle and friction")
+    blades: BladesSection | None = Field(default=None, description="both blades; the reduced load needs them")
+    load: Annotated[AnyLoad, Field(discriminator="model"), MayBeHole] = Field(description="what the crank has to move")
+    park_switch: ParkSwitchSection = Field(description="the park contact and its circuit")

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Self
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from hilplant.bench.parts import Sourced, WithAssumptions
 from hilplant.checked_yaml.checked import NotNegative, Positive, Real, wrong
@@ -14,10 +14,12 @@ QuarterTurn = Annotated[float, Field(ge=-1.5708, le=1.5708)]
 class DrySection(WithAssumptions):
     """Coefficients of (4.49); the fourth is ten times the third when it is left out, as in the thesis."""
 
-    mu_dry_1: NotNegative
-    mu_dry_2: NotNegative
-    mu_dry_3: NotNegative
-    mu_dry_4: NotNegative | None = None
+    mu_dry_1: NotNegative = Field(description="first coefficient of (4.49)")
+    mu_dry_2: NotNegative = Field(description="second coefficient of (4.49)")
+    mu_dry_3: NotNegative = Field(description="third coefficient of (4.49)")
+    mu_dry_4: NotNegative | None = Field(
+        default=None, description="fourth coefficient of (4.49); ten times the third when left out"
+    )
 
     def values(self) -> tuple[float, ...]:
         """Return all four in order."""
@@ -28,13 +30,17 @@ class DrySection(WithAssumptions):
 class WetSection(WithAssumptions):
     """Coefficients of (4.50); the second and the fifth are ten times the one before when they are left out."""
 
-    mu_wet_1: NotNegative
-    mu_wet_2: NotNegative | None = None
-    mu_wet_3: NotNegative
-    mu_wet_4: NotNegative
-    mu_wet_5: NotNegative | None = None
-    mu_wet_6: Real
-    mu_wet_7: Real
+    mu_wet_1: NotNegative = Field(description="first coefficient of (4.50)")
+    mu_wet_2: NotNegative | None = Field(
+        default=None, description="second coefficient of (4.50); ten times the first when left out"
+    )
+    mu_wet_3: NotNegative = Field(description="third coefficient of (4.50)")
+    mu_wet_4: NotNegative = Field(description="fourth coefficient of (4.50)")
+    mu_wet_5: NotNegative | None = Field(
+        default=None, description="fifth coefficient of (4.50); ten times the fourth when left out"
+    )
+    mu_wet_6: Real = Field(description="sixth coefficient of (4.50)")
+    mu_wet_7: Real = Field(description="seventh coefficient of (4.50)")
 
     def values(self) -> tuple[float, ...]:
         """Return all seven in order."""
@@ -46,10 +52,10 @@ class WetSection(WithAssumptions):
 class TackySection(WithAssumptions):
     """Coefficients of the tacky screen: settled value, rate of the rise, height of the peak, rate of its fall."""
 
-    mu_tacky_1: NotNegative
-    mu_tacky_2: Positive
-    mu_tacky_3: NotNegative
-    mu_tacky_4: NotNegative
+    mu_tacky_1: NotNegative = Field(description="settled value")
+    mu_tacky_2: Positive = Field(description="rate of the rise")
+    mu_tacky_3: NotNegative = Field(description="height of the peak")
+    mu_tacky_4: NotNegative = Field(description="rate of its fall")
 
     @model_validator(mode="after")
     def _rises_before_it_falls(self) -> Self:
@@ -66,11 +72,13 @@ class TackySection(WithAssumptions):
 class ScreenFile(Sourced):
     """A windscreen: its angle, and the friction of a blade on it, for velocities in mm/s."""
 
-    angle_rad: QuarterTurn
-    velocity_limit_mm_s: Positive
-    dry: DrySection
-    wet: WetSection
-    tacky: TackySection
+    model_config = ConfigDict(title="hilplant screen")
+
+    angle_rad: QuarterTurn = Field(description="turn of the screen about the x axis, gamma of (4.47)")
+    velocity_limit_mm_s: Positive = Field(description="velocity beyond which a coefficient keeps its value")
+    dry: DrySection = Field(description="friction of the dry screen")
+    wet: WetSection = Field(description="friction of the wet screen")
+    tacky: TackySection = Field(description="friction of the screen with little water")
 
     def friction(self) -> Friction:
         """Return the coefficients as the models take them."""

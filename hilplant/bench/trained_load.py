@@ -1,24 +1,20 @@
 """The trained file of a bench's load -> the numbers that the step reads; refused when made for something else."""
 
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hilplant.bench.load_files import POLYNOMIAL_FORMAT, TORQUE_FORMAT, PolynomialFile, TorqueFile, TrainedFile
+from hilplant.bench.load_files import PolynomialFile, TorqueFile
 from hilplant.bench.parameter_hash import linkage_hash, load_hash
 from hilplant.bench.plant_description import AnyLoad, BladeEntry, NetworkLoad, PolynomialLoad
 from hilplant.bench.screen_parts import ScreenFile
 from hilplant.bench.wiper import Mechanics
-from hilplant.checked_yaml.checksummed import sealed_file
-from hilplant.checked_yaml.place import Place
+from hilplant.checked_yaml.spot import NAMED, Spot
 from hilplant.models.records import NO_NETWORKS, Parameters
 from hilplant.models.torque_network import HIGHEST, LOWEST
 from hilplant.models.torque_samples import network_torques, physical_torques
 from hilplant.units import TURN_RAD
-
-Trained = TypeVar("Trained", bound=TrainedFile)
 
 #: Angles and speeds at which a network is looked at before it is trusted.
 _ANGLES, _SPEEDS = 97, 5
@@ -41,31 +37,27 @@ class TrainedLoad:
     file: TorqueFile | PolynomialFile | None = None
 
 
-def read_trained_load(place: Place, load: AnyLoad, around: Around) -> TrainedLoad | None:
-    """Read the file of a load that has one; None when it must not be used, which is noted."""
+def trained_load(spot: Spot, load: AnyLoad, around: Around) -> TrainedLoad | None:
+    """Return the network of a load that has one; None when it must not be used, which is noted."""
     if isinstance(load, NetworkLoad) and around.screen is not None and around.blades is not None:
         wanted = load_hash(around.mechanics.written, around.screen, around.blades, load.points)
-        network = _taken(place.inner("file"), TORQUE_FORMAT, TorqueFile, wanted)
-        return TrainedLoad(network.numbers(), network) if network is not None else None
+        return _taken(spot, load.file, wanted)
     if isinstance(load, PolynomialLoad) and load.file is not None:
-        wanted = linkage_hash(around.mechanics.written)
-        polynomial = _taken(place.inner("file"), POLYNOMIAL_FORMAT, PolynomialFile, wanted)
-        return TrainedLoad(polynomial.numbers(), polynomial) if polynomial is not None else None
+        return _taken(spot, load.file, linkage_hash(around.mechanics.written))
     return TrainedLoad(NO_NETWORKS)
 
 
-def keeps_its_bounds(place: Place, trained: TrainedLoad, parameters: Parameters, tables: NDArray[np.float64]) -> bool:
-    """Say whether a network is as near to this plant's physical load as its file says; note it when it is not."""
+def check_bounds(spot: Spot, trained: TrainedLoad, parameters: Parameters, tables: NDArray[np.float64]) -> None:
+    """Note when a network is not as near to this plant's physical load as its file says."""
     if not isinstance(trained.file, TorqueFile):
-        return True
+        return
     bounds = trained.file.bounds
     for wetness, bound in ((0.0, bounds.dry_n_m), (1.0, bounds.wet_n_m)):
         error = worst_on_grid(parameters, tables, wetness)
         if not error <= bound:
             text = f"the network is up to {error:.3g} N m away from the physical load, and its file promises {bound:g}"
-            place.note("file", text=f"{text}; train it again")
-            return False
-    return True
+            spot.note("file", NAMED, text=f"{text}; train it again")
+            return
 
 
 def worst_on_grid(parameters: Parameters, tables: NDArray[np.float64], wetness: float) -> float:
@@ -80,13 +72,10 @@ def worst_on_grid(parameters: Parameters, tables: NDArray[np.float64], wetness: 
     return float(np.abs(network - physical).max())
 
 
-def _taken(place: Place, wanted: str, kind: type[Trained], parameter_hash: str) -> Trained | None:
-    file = sealed_file(place, wanted)
-    trained = file.take(kind) if file is not None else None
-    if trained is None:
+def _taken(spot: Spot, file: TorqueFile | PolynomialFile, wanted: str) -> TrainedLoad | None:
+    if file.parameter_hash != wanted:
+        ours, theirs = wanted[:16], file.parameter_hash[:16]
+        text = f"this file was trained for other parameters: its hash is {theirs}, this bench's {ours}"
+        spot.note("file", NAMED, text=text)
         return None
-    if trained.parameter_hash != parameter_hash:
-        ours, theirs = parameter_hash[:16], trained.parameter_hash[:16]
-        place.note(text=f"'{place.data()}' was trained for other parameters: its hash is {theirs}, this bench's {ours}")
-        return None
-    return trained
+    return TrainedLoad(file.numbers(), file)

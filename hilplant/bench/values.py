@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from typing import Any
 
-from hilplant.checked_yaml.place import Place
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.declaration import Signal
 from hilplant.signals import INPUT_INDEX, INPUTS
@@ -31,16 +30,9 @@ def signal_value(signal: Signal, written: Any) -> float:
     return float(written)
 
 
-def signal_values(place: Place, otherwise: Mapping[str, Any]) -> tuple[tuple[int, float], ...]:
-    """Return index and value of the inputs that are written at a place, or `otherwise` when nothing is."""
-    written = place.data()
-    found: list[tuple[int, float]] = []
-    for name, value in (written if isinstance(written, dict) else otherwise).items():
-        try:
-            found.append((input_index(name), signal_value(INPUTS[input_index(name)], value)))
-        except ValueError as error:
-            place.note(name, text=str(error))
-    return tuple(found)
+def signal_values(written: Mapping[str, Any]) -> tuple[tuple[int, float], ...]:
+    """Return index and value of inputs of the plant from their names and checked values."""
+    return tuple((input_index(name), signal_value(INPUTS[input_index(name)], value)) for name, value in written.items())
 
 
 def input_index(name: str) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bench.parts import ArmSection, BladeSection, LinkageFile
-from hilplant.checked_yaml.place import Place
+from hilplant.checked_yaml.spot import Spot
 from hilplant.failure import Failure
 from hilplant.mechanics import collision
 from hilplant.mechanics.arms import arm_points
@@ -35,13 +35,11 @@ MAKERS = {"slave_driven": slave_driven, "master_driven": master_driven, "centre_
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """What the wiper's mechanics need to know from outside the linkage file.
+    """What the wiper's mechanics need to know from outside the linkage spot.
 
     `air` are area and coefficients of the left and the right blade; `needs_masses` says whether none may be missing.
-    `blades` is where the bench speaks of the air.
     """
 
-    blades: Place
     screen_angle_rad: float
     air: tuple[Aerodynamics, Aerodynamics]
     points: int
@@ -50,7 +48,7 @@ class Surroundings:
 
 @dataclass(frozen=True, slots=True)
 class Mechanics:
-    """A wiper that was put together: its file, its parts and its table over the crank angle.
+    """A wiper that was put together: its spot, its parts and its table over the crank angle.
 
     `closest` is the place of a turn nearest to a dead point, `clearance_m` the least distance of the blades.
     """
@@ -63,24 +61,21 @@ class Mechanics:
     clearance_m: float
 
 
-def read_mechanics(named: Place, around: Surroundings) -> Mechanics | None:
-    """Build the wiper from the file that is named at a place; all that is wrong with it is noted."""
-    file = named.referred_file()
-    written = file.take(LinkageFile) if file is not None else None
-    if file is None or written is None:
-        return None
-    parts = _parts(file, written, around)
+def build_mechanics(plant: Spot, written: LinkageFile, around: Surroundings) -> Mechanics | None:
+    """Build the wiper of a plant; all that is wrong with it is noted."""
+    spot = plant.inner("linkage")
+    parts = _parts(spot, written, around)
     if parts is None:
         return None
     try:
         closest, wiper, table = _tabulated(_ByContent(parts, written.least_transmission_deg))
     except CoefficientError as error:
-        around.blades.note(text=str(error))
+        plant.note("blades", text=str(error))
         return None
     except Failure as error:
-        file.note("points_m", text=str(error))
+        spot.note("points_m", text=str(error))
         return None
-    clearance = _attempt(file.inner("least_clearance_m"), lambda: _clearance(written, parts, table))
+    clearance = _attempt(spot.inner("least_clearance_m"), lambda: _clearance(written, parts, table))
     return Mechanics(written, parts.linkage, wiper, table, closest, clearance) if clearance is not None else None
 
 
@@ -107,13 +102,13 @@ def _tabulated(same: _ByContent) -> tuple[Closeness, Wiper, NDArray[np.float64]]
     return closest, wiper, run_time_table(wiper)
 
 
-def _parts(file: Place, written: LinkageFile, around: Surroundings) -> WiperParts | None:
-    complete = not around.needs_masses or _has_masses(file, written)
-    linkage = _attempt_linkage(file, lambda: _linkage(written))
-    left, right = (_side(file, written, side, air) for side, air in zip(SIDES, around.air, strict=True))
+def _parts(spot: Spot, written: LinkageFile, around: Surroundings) -> WiperParts | None:
+    complete = not around.needs_masses or _has_masses(spot, written)
+    linkage = _attempt_linkage(spot, lambda: _linkage(written))
+    left, right = (_side(spot, written, side, air) for side, air in zip(SIDES, around.air, strict=True))
     if linkage is None or left is None or right is None:
         return None
-    masses = _attempt(file.inner("masses_kg"), lambda: linkage_masses(linkage.bodies, written.masses_kg or {}))
+    masses = _attempt(spot.inner("masses_kg"), lambda: linkage_masses(linkage.bodies, written.masses_kg or {}))
     if masses is None or not complete:
         return None
     damping = written.pivot_damping_n_m_s
@@ -126,10 +121,10 @@ def _linkage(written: LinkageFile) -> Linkage:
     return MAKERS[written.kind](written.points_m)
 
 
-def _side(file: Place, written: LinkageFile, side: str, air: Aerodynamics) -> SideParts | None:
+def _side(spot: Spot, written: LinkageFile, side: str, air: Aerodynamics) -> SideParts | None:
     arm, blade = _sections(written, side)
-    points = _attempt(file.inner(f"{side}_arm", "points_m"), partial(arm_points, arm.kind, arm.points_m))
-    tips = _attempt(file.inner(f"{side}_blade", "points_m"), partial(blade_tips, blade.points_m))
+    points = _attempt(spot.inner(f"{side}_arm", "points_m"), partial(arm_points, arm.kind, arm.points_m))
+    tips = _attempt(spot.inner(f"{side}_blade", "points_m"), partial(blade_tips, blade.points_m))
     if points is None or tips is None:
         return None
     return SideParts(points, tips, arm.mass_kg or 0.0, blade.mass_kg or 0.0, air)
@@ -139,7 +134,7 @@ def _sections(written: LinkageFile, side: str) -> tuple[ArmSection, BladeSection
     return (written.left_arm, written.left_blade) if side == "left" else (written.right_arm, written.right_blade)
 
 
-def _has_masses(file: Place, written: LinkageFile) -> bool:
+def _has_masses(spot: Spot, written: LinkageFile) -> bool:
     """Say whether there are masses of everything that moves; note each that is missing."""
     missing = [] if written.masses_kg else ["masses_kg"]
     for side in SIDES:
@@ -148,7 +143,7 @@ def _has_masses(file: Place, written: LinkageFile) -> bool:
         missing += [f"{side}_blade"] if blade.mass_kg is None else []
     for key in missing:
         name = "mass_kg" if key != "masses_kg" else key
-        file.note(key, text=f"key '{name}' is missing; the reduced load needs the mass of everything that moves")
+        spot.note(key, text=f"key '{name}' is missing; the reduced load needs the mass of everything that moves")
     return not missing
 
 
@@ -171,19 +166,19 @@ def _blade_lines(side: SideParts) -> list[collision.Line]:
     return [(joint, (joint[0] + tip[0], joint[1] + tip[1])) for tip in side.blade or ()]
 
 
-def _attempt_linkage(file: Place, build: Callable[[], Linkage]) -> Linkage | None:
+def _attempt_linkage(spot: Spot, build: Callable[[], Linkage]) -> Linkage | None:
     """Build a linkage; its errors may know the part of the file they are about."""
     try:
         return build()
     except Failure as error:
         part: tuple[str | int, ...] = getattr(error, "part", ()) or ("points_m",)
-        file.note(*part, text=str(error))
+        spot.note(*part, text=str(error))
         return None
 
 
-def _attempt(place: Place, build: Callable[[], Built]) -> Built | None:
+def _attempt(spot: Spot, build: Callable[[], Built]) -> Built | None:
     try:
         return build()
     except Failure as error:
-        place.note(text=str(error))
+        spot.note(text=str(error))
         return None

@@ -1,13 +1,24 @@
 """The base of all descriptions: strict pydantic models whose errors say what would be right."""
 
-from collections.abc import Iterator, Sequence
-from typing import Annotated, Any, Self
+from collections.abc import Callable, Collection, Sequence
+from contextlib import suppress
+from typing import Annotated, Any, ClassVar, NamedTuple
 
-from pydantic import BaseModel, ConfigDict, Field, ModelWrapValidatorHandler, ValidationError, model_validator
-from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    ValidationError,
+    ValidationInfo,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
+from pydantic_core import CoreSchema, ErrorDetails, InitErrorDetails, PydanticCustomError, core_schema
 
-from hilplant.checked_yaml.problems import Problem, suggestion
-from hilplant.checked_yaml.yaml_reader import Document, Location
+from hilplant.checked_yaml.draft import HOLE, Draft
+from hilplant.checked_yaml.problems import suggestion
+from hilplant.checked_yaml.yaml_reader import Location
 
 Real = float
 Positive = Annotated[float, Field(gt=0)]
@@ -38,15 +49,66 @@ class Checked(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
-    @model_validator(mode="wrap")
+    #: In a draft: whether it may have holes inside, and whether it goes on without what is wrong with its own keys.
+    holes_inside: ClassVar[bool] = False
+    survives: ClassVar[bool] = False
+
     @classmethod
-    def _reword(cls, value: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         """Reword this group's own errors, here where its keys are at hand; inner groups have done theirs."""
-        try:
-            return handler(value)
-        except ValidationError as error:
-            details = [_reworded(detail, set(cls.model_fields)) for detail in error.errors(include_url=False)]
-            raise ValidationError.from_exception_data(cls.__name__, details) from None
+        return core_schema.with_info_wrap_validator_function(
+            lambda value, inner, info: _collected(value, inner, info, cls), handler(source)
+        )
+
+
+class Container(Checked):
+    """A group whose parts are checked against each other even while some of its keys are wrong."""
+
+    holes_inside: ClassVar[bool] = True
+    survives: ClassVar[bool] = True
+
+
+def _collected(value: Any, handler: Callable[[Any], Any], info: ValidationInfo, model: type[Checked] | None) -> Any:
+    """Validate a value; in a draft, mistakes are kept there and the value becomes a hole, which is None."""
+    draft = info.context if isinstance(info.context, Draft) else None
+    if draft is not None and value is HOLE:
+        return draft.hole()
+    at = draft.location(value) if draft is not None else None
+    before = draft.holes if draft is not None else 0
+    known = set(model.model_fields) if model is not None else set()
+    try:
+        whole = handler(value)
+        sound = draft is None or draft.holes == before or model is None or model.holes_inside
+        return whole if sound else None
+    except ValidationError as error:
+        if not isinstance(value, dict) and at is None:
+            raise  # the group around knows what the value is called
+        mistakes = [_mistake(detail, known, at or ()) for detail in error.errors(include_url=False)]
+        if draft is None or at is None:
+            title = model.__name__ if model is not None else "value"
+            raise ValidationError.from_exception_data(title, [mistake.details() for mistake in mistakes]) from None
+    for mistake in mistakes:
+        draft.note((*at, *mistake.location, *mistake.inner), mistake.text)
+    if model is None or not model.survives:
+        return draft.hole()
+    wrong_keys = {mistake.location[0] for mistake in mistakes if mistake.location}
+    right = {key: inner for key, inner in value.items() if key not in wrong_keys}
+    return _first_sound(handler, right | dict.fromkeys(wrong_keys & known, HOLE), right)
+
+
+def _first_sound(handler: Callable[[Any], Any], *groups: dict[str, Any]) -> Any:
+    for group in groups:
+        with suppress(ValidationError):
+            return handler(group)
+    return None
+
+
+def _in_a_draft(value: Any, handler: ValidatorFunctionWrapHandler, info: ValidationInfo) -> Any:
+    return _collected(value, handler, info, None)
+
+
+#: Marks what is no group, or a choice of groups, and may be a hole in a draft.
+MayBeHole = WrapValidator(_in_a_draft)
 
 
 def wrong(*location: str | int, text: str) -> PydanticCustomError:
@@ -54,24 +116,36 @@ def wrong(*location: str | int, text: str) -> PydanticCustomError:
     return PydanticCustomError("wrong", "{text}", {"text": text, "at": location})
 
 
-def problems_of(error: ValidationError, document: Document, location: Location) -> Iterator[Problem]:
-    """Turn what pydantic found below `location` into problems with file and line."""
-    for detail in error.errors(include_url=False):
-        steps = (*detail["loc"], *detail.get("ctx", {}).get("at", ()))
-        yield document.problem(_existing(document, location, steps), detail["msg"])
+def wrong_value(text: str) -> PydanticCustomError:
+    """Return an error whose text follows the name of the value that is validated."""
+    return PydanticCustomError("wrong_value", "{text}", {"text": text})
 
 
-def _reworded(detail: ErrorDetails, known: set[str]) -> InitErrorDetails:
-    context = {"text": _text(detail, known), "at": detail.get("ctx", {}).get("at", ())}
-    kind = PydanticCustomError("wrong", "{text}", context)
-    return InitErrorDetails(type=kind, loc=detail["loc"], input=detail["input"])
+class _Mistake(NamedTuple):
+    """One error: where pydantic saw it, where within that it is, what is wrong, and the value."""
+
+    location: Location
+    inner: Location
+    text: str
+    value: Any
+
+    def details(self) -> InitErrorDetails:
+        """Return it as an error that is passed on."""
+        kind = PydanticCustomError("wrong", "{text}", {"text": self.text, "at": self.inner})
+        return InitErrorDetails(type=kind, loc=self.location, input=self.value)
 
 
-def _text(detail: ErrorDetails, known: set[str]) -> str:
+def _mistake(detail: ErrorDetails, known: set[str], at: Location) -> _Mistake:
+    inner = tuple(detail.get("ctx", {}).get("at", ()))
+    return _Mistake(detail["loc"], inner, text_of(detail, known, at), detail["input"])
+
+
+def text_of(detail: ErrorDetails, known: Collection[str] = (), at: Location = ()) -> str:
+    """Return what is wrong in words, for a group of `known` keys that stands `at` a location."""
     kind, value = detail["type"], detail["input"]
-    key = _called(detail["loc"])
-    if kind == "wrong":
-        return detail["msg"]
+    key = _called(detail["loc"] or at)
+    if kind in ("wrong", "wrong_value"):
+        return detail["msg"] if kind == "wrong" else f"{key} {detail['msg']}"
     if kind == "extra_forbidden":
         return f"unknown key '{key}'{suggestion(key, known)}"
     if kind == "missing":
@@ -81,7 +155,7 @@ def _text(detail: ErrorDetails, known: set[str]) -> str:
     if kind in ("too_short", "too_long"):
         return f"{key} {_length_text(detail)}"
     wording = _WORDING.get(kind) or detail["msg"].replace("Input should be", "must be", 1)
-    return f"{key} {wording}, not {_shown(value)}".lstrip()
+    return f"{key} {wording}, not {shown_value(value)}".lstrip()
 
 
 def _called(location: Sequence[str | int]) -> str:
@@ -110,18 +184,11 @@ def _tag_text(detail: ErrorDetails, key: str) -> str:
     return f"unknown {key} {tag} '{context['tag']}'{suggestion(context['tag'], expected)}"
 
 
-def _shown(value: Any) -> str:
+def shown_value(value: Any) -> str:
+    """Return a value as messages show it: what it is, or its beginning."""
     if isinstance(value, dict | list):
         return "a group of keys" if isinstance(value, dict) else "a list"
     if value is None or isinstance(value, bool):
         return {True: "true", False: "false", None: "nothing"}[value]
     text = repr(value)
     return text if len(text) <= _LONGEST_SHOWN else f"{text[:_LONGEST_SHOWN]}..."
-
-
-def _existing(document: Document, location: Location, steps: tuple[str | int, ...]) -> Location:
-    """Drop from `steps` what pydantic adds and the file does not hold: names of the choices of a union."""
-    for step in steps:
-        if (*location, step) in document.places:
-            location = (*location, step)
-    return location

@@ -8,8 +8,6 @@ content is looked at. Nothing in it is ever executed.
 import hashlib
 from pathlib import Path
 
-from hilplant.checked_yaml.place import Place
-
 _LAST = "content_hash: "
 
 
@@ -35,19 +33,8 @@ def flaw(text: str, wanted: str) -> str:
     return ""
 
 
-def sealed_file(place: Place, wanted: str) -> Place | None:
-    """Return the whole of the sealed file that is named at a place; what is wrong with it is one problem there."""
-    path = place.reading.referred_path(place.document, place.location)
-    if path is None:
-        return None
-    why = _flaw_of(path, wanted)
-    if why:
-        place.note(text=f"'{place.data()}' {why}")
-        return None
-    return place.referred_file()
-
-
-def _flaw_of(path: Path, wanted: str) -> str:
+def flaw_of(path: Path, wanted: str) -> str:
+    """Return what is wrong with a sealed file that should begin with `format: wanted`, or nothing."""
     try:
         return flaw(path.read_text(encoding="utf-8"), wanted)
     except UnicodeDecodeError:

@@ -3,8 +3,15 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
+from typing import Literal
 
 from hilplant.failure import Failure
+
+#: An error stops everything; a warning is shown, and the bench runs all the same.
+Severity = Literal["error", "warning"]
+
+#: So many known words are named in a message at most.
+_MOST_KNOWN = 30
 
 
 @dataclass(frozen=True, order=True, slots=True)
@@ -14,10 +21,12 @@ class Problem:
     file: str
     line: int
     text: str
+    severity: Severity = "error"
 
     def __str__(self) -> str:
-        """Return the line that the user sees."""
-        return f"{self.file}:{self.line}: {self.text}"
+        """Return the line that the user sees; what would steer a terminal is escaped."""
+        warning = "warning: " if self.severity == "warning" else ""
+        return visible(f"{self.file}:{self.line}: {warning}{self.text}")
 
 
 class BenchError(Failure):
@@ -30,9 +39,17 @@ class BenchError(Failure):
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
-    """Return how a sentence about an unknown word ends: with the nearest known word, or with all of them."""
+    """Return how a sentence about an unknown word ends: the nearest known word, or all, or the nearest of many."""
     names = sorted(known)
     near = get_close_matches(word, names, n=1, cutoff=0.5)
     if near:
         return f", did you mean '{near[0]}'?"
+    if len(names) > _MOST_KNOWN:
+        nearest = ", ".join(get_close_matches(word, names, n=3, cutoff=0.0))
+        return f"; {len(names)} are known, the nearest are {nearest}"
     return f"; known: {', '.join(names)}" if names else ""
+
+
+def visible(text: str) -> str:
+    """Return a text with control characters as escapes, so that it is one line that a terminal only shows."""
+    return "".join(letter if letter.isprintable() else repr(letter)[1:-1] for letter in text)

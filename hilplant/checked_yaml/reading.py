@@ -1,13 +1,16 @@
 """Reads the files of one bench or scenario, and collects all that is wrong with them."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
 from hilplant import resources
-from hilplant.checked_yaml.checked import Checked, problems_of
+from hilplant.checked_yaml.checked import Checked, text_of
+from hilplant.checked_yaml.draft import Draft
 from hilplant.checked_yaml.problems import BenchError, Problem
+from hilplant.checked_yaml.spot import NAMED, Finding
 from hilplant.checked_yaml.yaml_reader import Document, Location, read_text
 
 Description = TypeVar("Description", bound=Checked)
@@ -20,6 +23,7 @@ class Reading:
         """Begin with nothing read and nothing wrong."""
         self.problems: list[Problem] = []
         self.sources: dict[str, str] = {}
+        self._wrong: set[Location] = set()
 
     def text(self, path: Path) -> str:
         """Return a file's text and keep it among the sources; raises OSError or UnicodeDecodeError."""
@@ -36,17 +40,27 @@ class Reading:
             return Document(shown(path))
         return self._document(text, path)
 
+    def given_text(self, text: str, name: Path) -> Document:
+        """Read text that no file holds."""
+        self.sources[str(name)] = text
+        return self._document(text, name)
+
+    def file(self, path: Path) -> Document | str:
+        """Read a YAML file; return why it cannot be read."""
+        try:
+            return self._document(self.text(path), path)
+        except (OSError, UnicodeDecodeError) as error:
+            return f"cannot be read: {reason(error)}"
+
     def referred_file(self, document: Document, location: Location) -> Document | None:
         """Read the YAML file whose name stands at `location`; when that fails, the mistake is there."""
         path = self.referred_path(document, location)
-        if path is None:
-            return None
-        try:
-            found = self._document(self.text(path), path)
+        found = self.file(path) if path is not None else ""
+        if isinstance(found, Document):
             return None if found.problems and found.data is None else found
-        except (OSError, UnicodeDecodeError) as error:
-            self.note(document, location, f"'{document.at(location)}' cannot be read: {reason(error)}")
-            return None
+        if found:
+            self.note(document, location, f"'{document.at(location)}' {found}")
+        return None
 
     def referred_path(self, document: Document, location: Location) -> Path | None:
         """Find the file named at `location`, beside the file that names it or among the shipped ones."""
@@ -62,6 +76,7 @@ class Reading:
 
     def note(self, document: Document, location: Location, text: str) -> None:
         """Keep a problem at the line of `location`."""
+        self._wrong.add(location)
         self.problems.append(document.problem(location, text))
 
     def take(self, document: Document, location: Location, model: type[Description]) -> Description | None:
@@ -70,21 +85,50 @@ class Reading:
 
     def check(self, document: Document, location: Location, data: Any, model: type[Description]) -> Description | None:
         """Check `data`, which came from `location`, against its description."""
+        before = len(self.problems)
+        checked = self.draft(document, location, data, model)
+        return checked if len(self.problems) == before else None
+
+    def draft(self, document: Document, location: Location, data: Any, model: type[Description]) -> Description | None:
+        """Return what `data` describes, with a hole wherever it is wrong; what is wrong is kept."""
+        draft = Draft(data, location)
         try:
-            return model.model_validate(data)
-        except ValidationError as error:
-            self.problems.extend(problems_of(error, document, location))
-            return None
+            found = model.model_validate(data, context=draft)
+        except ValidationError as error:  # the data is no group at all
+            found = None
+            for detail in error.errors(include_url=False):
+                draft.note((*location, *detail["loc"]), text_of(detail))
+        self.keep(document, draft.findings)
+        return found
+
+    def keep(self, document: Document, findings: Sequence[Finding]) -> None:
+        """Keep what was found in a description as problems with file and line."""
+        for finding in findings:
+            if finding.unless_wrong and any(_is_within(wrong, finding.location) for wrong in self._wrong):
+                continue
+            at = document.existing(finding.location)
+            steps = ".".join(str(step) for step in finding.location if step != NAMED)
+            text = finding.text if document.places or not steps else f"{steps}: {finding.text}"
+            self.problems.append(document.problem(at, text, finding.severity))
+        self._wrong |= {finding.location for finding in findings if finding.severity == "error"}
+
+    def sorted_problems(self) -> tuple[Problem, ...]:
+        """Return every problem once, by file and line."""
+        return tuple(sorted(dict.fromkeys(self.problems)))
 
     def raise_problems(self) -> None:
         """Refuse to go on when anything was wrong."""
         if self.problems:
-            raise BenchError(sorted(dict.fromkeys(self.problems)))
+            raise BenchError(self.sorted_problems())
 
     def _document(self, text: str, path: Path) -> Document:
         document = read_text(text, shown(path))
         self.problems.extend(document.problems)
         return document
+
+
+def _is_within(location: Location, outer: Location) -> bool:
+    return location[: len(outer)] == outer
 
 
 def shown(path: Path) -> str:

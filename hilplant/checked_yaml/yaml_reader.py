@@ -11,7 +11,7 @@ from typing import Any
 
 import yaml
 
-from hilplant.checked_yaml.problems import Problem
+from hilplant.checked_yaml.problems import Problem, Severity
 
 #: Where a value stands in the data: the keys and indices that lead to it.
 Location = tuple[str | int, ...]
@@ -43,10 +43,18 @@ class Document:
             steps = steps[:-1]
         return self.places.get(steps, (self.file, 1))
 
-    def problem(self, location: Sequence[str | int], text: str) -> Problem:
+    def problem(self, location: Sequence[str | int], text: str, severity: Severity = "error") -> Problem:
         """Return a problem at the line of `location`."""
         file, line = self.place(location)
-        return Problem(file, line, text)
+        return Problem(file, line, text, severity)
+
+    def existing(self, location: Sequence[str | int]) -> Location:
+        """Drop from a location what the files do not hold, such as the names of the choices of a union."""
+        found: Location = ()
+        for step in location:
+            if (*found, step) in self.places:
+                found = (*found, step)
+        return found
 
     def at(self, location: Sequence[str | int]) -> Any:
         """Return the value at `location`, None where there is none."""
@@ -59,6 +67,17 @@ class Document:
             else:
                 return None
         return value
+
+    def replace(self, location: Location, value: Any) -> None:
+        """Put another value at a location that exists."""
+        self.at(location[:-1])[location[-1]] = value
+
+    def put(self, location: Location, part: "Document", named: str) -> None:
+        """Put another file's data where it is named; the naming line is kept as that of the step `named` within."""
+        self.replace(location, part.data if part.data is not None else {})
+        self.places[(*location, named)] = self.places[location]
+        self.places |= {(*location, *inner): place for inner, place in part.places.items()}
+        self.places[location] = part.place(())
 
 
 def read_text(text: str, file: str) -> Document:

@@ -78,7 +78,7 @@ def _with_network(bench: Bench, content: Figures) -> Bench:
     parameters = bench.parameters._replace(networks=file.numbers())
     row = pack(parameters)
     row[PARAMETER_INDEX["load.model"]] = LOADS.index("network")
-    load = NetworkLoad(model="network", file="torque.yaml")
+    load = NetworkLoad(model="network", file=file)
     return replace(
         bench, parameters=parameters, parameter_row=row, plant=replace(bench.plant, parameters=parameters, load=load)
     )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from hilplant import resources
-from hilplant.bench.description import InitialSection, OptionalGroup
+from hilplant.bench.description import InitialSection
 from hilplant.bench.values import signal_value
 from hilplant.checked_yaml.checked import Checked, NotNegative, Positive
 from hilplant.checked_yaml.problems import suggestion
@@ -35,7 +35,7 @@ class _ScenarioFile(Checked):
     title: str = ""
     requirement: str = ""
     bench: Annotated[str | None, Field(min_length=1)] = None
-    initial: OptionalGroup
+    initial: Annotated[dict[str, Any], Field(default_factory=dict)]
     signals: Annotated[dict[str, list[_Pair]], Field(default_factory=dict)]
     stalk: Annotated[list[_Pair], Field(default_factory=list)]
     marks: Annotated[dict[str, NotNegative], Field(default_factory=dict)]

@@ -2,9 +2,6 @@
 
 from typing import Any
 
-from pydantic import ValidationError
-
-from hilplant.checked_yaml.checked import problems_of
 from hilplant.checked_yaml.reading import Reading
 from hilplant.checked_yaml.yaml_reader import Document
 from hilplant.ecu.stalk import Turn, move_named, wanted
@@ -42,10 +39,9 @@ def read_expectations(reading: Reading, document: Document) -> tuple[Placed, ...
         except ValueError as error:
             reading.note(document, ("expect", index), str(error))
             continue
-        try:
-            found.append(Placed(kind.model_validate(entry), *document.place(("expect", index))))
-        except ValidationError as error:
-            reading.problems.extend(problems_of(error, document, ("expect", index)))
+        expected = reading.check(document, ("expect", index), entry, kind)
+        if expected is not None:
+            found.append(Placed(expected, *document.place(("expect", index))))
     return tuple(found)
 
 

@@ -92,7 +92,7 @@ def test_a_mistake_in_a_section_is_told_at_its_line(tmp_path: Path, text: str, m
         ("RelayCommand: {timeout_ms: 50, signals: {RelayOn: relay_on}}", "cycle time of 50 ms, not 50"),
         (
             "RelayCommand: {protection: {profil: 1}, signals: {RelayOn: relay_on}}",
-            "RelayCommand: protection has no key",
+            "unknown key 'profil', did you mean 'profile'?",
         ),
         ("Environment: {signals: {Screen: {signal: screen, choices: {Dry: dry, Wet: soaked}}}}", "'soaked'"),
         (

@@ -1,0 +1,191 @@
+"""What the bus section of a bench may say, and the messages of the ECU's section."""
+
+from typing import Annotated, Any, ClassVar, Self, TypeVar
+
+from pydantic import BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler, model_validator
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
+
+from hilplant.bench.signal_names import EcuStatusName, InputName, InputValues, PublishedName, StalkName
+from hilplant.checked_yaml.checked import (
+    Checked,
+    Container,
+    MayBeHole,
+    Name,
+    NotNegative,
+    Real,
+    shown_value,
+    wrong,
+    wrong_value,
+)
+
+#: Profiles of AUTOSAR E2E that are known, and the ways in which a data id enters a checksum.
+E2E_PROFILES = (1, 2, 4, 5, 6, 7, 11)
+DATA_ID_MODES = ("both", "alternating", "low", "nibble")
+
+
+class InterfaceSection(Checked):
+    """Arguments of the CAN interface, passed on as they are; only its name is known here."""
+
+    model_config = ConfigDict(
+        extra="allow", json_schema_extra={"examples": [{"interface": "socketcan", "channel": "vcan0"}]}
+    )
+
+    interface: Name = Field(description="name of an interface of python-can, such as socketcan or virtual")
+
+
+class SignalEntry(Checked):
+    """How one signal of the database relates to one of the plant.
+
+    The plant's value is the database's physical value times `scale` plus `offset`, in both directions.
+    """
+
+    signal: Name = Field(description="signal of the plant")
+    scale: Real = Field(default=1.0, description="factor from the database's value to the plant's; not 0")
+    offset: Real = Field(default=0.0, description="what is added after the factor, in the plant's unit")
+    choices: dict[str, str] | None = Field(
+        default=None, description="from labels of the database to those of the plant"
+    )
+    invert: bool = Field(default=False, description="whether 0 and 1 of a flag change places")
+
+    @model_validator(mode="after")
+    def _scale_not_zero(self) -> Self:
+        if self.scale == 0.0:
+            raise wrong("scale", text="scale must not be 0")
+        return self
+
+
+class InputEntry(SignalEntry):
+    """From a signal of the database to an input of the plant."""
+
+    signal: InputName = Field(description="input of the plant")
+
+
+class PublishedEntry(SignalEntry):
+    """From an output or status of the plant to a signal of the database."""
+
+    signal: PublishedName = Field(description="output or status of the plant")
+
+
+class StalkEntry(SignalEntry):
+    """From a signal of the database to one of the stalk."""
+
+    signal: StalkName = Field(description="signal of the stalk")
+
+
+class EcuStatusEntry(SignalEntry):
+    """From a signal of the ECU's status to one of the database."""
+
+    signal: EcuStatusName = Field(description="signal of the ECU's status")
+
+
+def _listed(written: Any) -> Any:
+    """Return what one signal of the database becomes as a list: of one where a name or one group is written."""
+    entries = written if isinstance(written, list) else [written]
+    if not all(isinstance(entry, str | dict) for entry in entries):
+        raise wrong_value(f"must be a group of keys, not {shown_value(written)}")
+    return [{"signal": entry} if isinstance(entry, str) else entry for entry in entries]
+
+
+class _NameGroupOrList:
+    """Lets the schema offer a name alone, a group, or a list of these."""
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        group = handler(core)["items"]
+        name = handler.resolve_ref_schema(group)["properties"]["signal"]
+        return {"anyOf": [name, group, {"type": "array", "items": {"anyOf": [name, group]}, "minItems": 1}]}
+
+
+Entry = TypeVar("Entry", bound=SignalEntry)
+Entries = Annotated[tuple[Entry, ...], Field(strict=False, min_length=1), BeforeValidator(_listed), _NameGroupOrList()]
+Inputs = Annotated[dict[str, Entries[InputEntry]], Field(min_length=1)]
+Published = Annotated[dict[str, Entries[PublishedEntry]], Field(min_length=1)]
+Stalk = Annotated[dict[str, Entries[StalkEntry]], Field(min_length=1)]
+EcuStatus = Annotated[dict[str, Entries[EcuStatusEntry]], Field(min_length=1)]
+
+_SIGNALS = "signal of the database: what it is to the plant"
+
+
+class ProtectionSection(Checked):
+    """AUTOSAR end-to-end protection of a message; which keys go together is checked with the message's length."""
+
+    profile: int | None = Field(default=None, description="E2E profile", json_schema_extra={"enum": list(E2E_PROFILES)})
+    data_id: int | None = Field(default=None, ge=0, description="number of the message that both ends know")
+    data_id_list: list[int] | None = Field(
+        default=None, description="16 numbers from 0 to 255 instead of data_id, profile 2"
+    )
+    offset: int | None = Field(default=None, ge=0, description="byte at which the header starts; 0 when left out")
+    max_delta_counter: int | None = Field(
+        default=None, ge=1, description="largest accepted step of the counter; 1: no loss"
+    )
+    data_id_mode: str | None = Field(
+        default=None, description="how data_id enters the checksum", json_schema_extra={"enum": list(DATA_ID_MODES)}
+    )
+
+    def settings(self) -> dict[str, Any]:
+        """Return the keys that are given."""
+        return self.model_dump(exclude_unset=True)
+
+
+class ReceivedEntry(Checked):
+    """A message that is taken in; without `timeout_ms` it may stay away for ten cycle times."""
+
+    holes_inside: ClassVar[bool] = True
+
+    signals: dict[str, tuple[SignalEntry, ...]]
+    timeout_ms: NotNegative | None = Field(
+        default=None, description="after how long without it its message counts as lost; 0: it may stay away"
+    )
+    protection: ProtectionSection | None = Field(default=None, description="end-to-end protection of the message")
+
+
+class SentEntry(Checked):
+    """A message that is sent; by default at the database's cycle time."""
+
+    holes_inside: ClassVar[bool] = True
+
+    signals: dict[str, tuple[SignalEntry, ...]]
+    period_ms: NotNegative | None = Field(default=None, description="how often it is sent; 0: on change only")
+    offset_ms: NotNegative = Field(default=0.0, description="by how much its period begins later than tick 0")
+    on_change: list[str] = Field(default=[], description="signals whose change sends it in the same tick")
+    protection: ProtectionSection | None = Field(default=None, description="end-to-end protection of the message")
+
+
+class CommandEntry(ReceivedEntry):
+    """A message that commands the plant."""
+
+    signals: Inputs = Field(description=_SIGNALS)  # type: ignore[assignment]
+
+
+class ReportEntry(SentEntry):
+    """A message that shows the plant."""
+
+    signals: Published = Field(description=_SIGNALS)  # type: ignore[assignment]
+    on_change: list[PublishedName] = Field(default=[], description="signals whose change sends it in the same tick")
+
+
+class StalkMessageEntry(ReceivedEntry):
+    """A message from the stalk to the ECU."""
+
+    signals: Stalk = Field(description="signal of the database: signal of the stalk")  # type: ignore[assignment]
+
+
+class EcuStatusMessageEntry(SentEntry):
+    """A message in which the ECU tells of itself."""
+
+    signals: EcuStatus = Field(description="signal of the database: what the ECU tells")  # type: ignore[assignment]
+    on_change: list[EcuStatusName] = Field(default=[], description="signals whose change sends it in the same tick")
+
+
+class BusSection(Container):
+    """The plant on its bus."""
+
+    interface: InterfaceSection = Field(description="CAN interface with its arguments, as python-can takes them")
+    database: Annotated[Name, MayBeHole] = Field(description="file of the bus database: DBC, ARXML, KCD, SYM")
+    receive: Annotated[dict[str, CommandEntry], MayBeHole] = Field(
+        default={}, description="messages that command the plant"
+    )
+    send: Annotated[dict[str, ReportEntry], MayBeHole] = Field(default={}, description="messages that show the plant")
+    safe: InputValues = Field(
+        default={}, description="what inputs become while commands are lost; relays open unless named"
+    )
