@@ -1,5 +1,6 @@
 #!/bin/sh
 # Install hilplant for service on Debian or Ubuntu, as root: install.sh WHEEL. The image is built by this script too.
+# Its libraries are those of requirements.txt beside it, checked by their hashes; lock.sh makes that file.
 # Makes /opt/hilplant (a virtual environment), the user hilplant, and its folders; compiles the models for this processor.
 set -eu
 wheel=${1:?usage: install.sh WHEEL}
@@ -13,7 +14,8 @@ fi
 rm -rf /var/lib/apt/lists/*
 
 python3 -m venv --clear /opt/hilplant
-/opt/hilplant/bin/pip install -q --no-cache-dir "hilplant[mdf] @ file://$(realpath "$wheel")"
+/opt/hilplant/bin/pip install -q --no-cache-dir --require-hashes --only-binary :all: -r "$(dirname "$0")/requirements.txt"
+/opt/hilplant/bin/pip install -q --no-cache-dir --no-deps "$(realpath "$wheel")"
 
 id hilplant >/dev/null 2>&1 || useradd --system --home-dir /var/lib/hilplant --shell /usr/sbin/nologin hilplant
 install -d -o hilplant -g hilplant /var/lib/hilplant /var/cache/hilplant
@@ -21,5 +23,5 @@ install -d -o hilplant -g hilplant /var/lib/hilplant /var/cache/hilplant
 # Runs the plant for some seconds, in memory: proves the installation and leaves compiled models for the first start.
 cd /var/lib/hilplant
 setpriv --reuid=hilplant --regid=hilplant --clear-groups --no-new-privs \
-    env HOME=/var/lib/hilplant XDG_CACHE_HOME=/var/cache/hilplant /opt/hilplant/bin/hilplant demo --seconds 8 --out warm-up
-rm -r warm-up
+    env HOME=/var/lib/hilplant XDG_CACHE_HOME=/var/cache/hilplant /opt/hilplant/bin/hilplant run virtual --seconds 4 --record warm-up.hilrec
+rm warm-up.hilrec

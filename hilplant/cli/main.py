@@ -1,9 +1,11 @@
 """The command line: its options, and what an error looks like; the commands are in `hilplant.cli.commands`."""
 
 import sys
+from typing import Annotated
 
 import typer
 
+import hilplant
 from hilplant.cli.groups import group_app
 from hilplant.extras import extra_of, remedy
 from hilplant.failure import Failure, Unfit
@@ -15,11 +17,27 @@ app = group_app(
     "hilplant.cli.commands",
     FIRST,
     name="hilplant",
+    add_completion=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
     help="Virtual windscreen wipers on a real CAN bus, at 1 kHz. Start with: hilplant demo",
     epilog="An expected failure is one line; with --debug anywhere, where it came from is shown too.",
 )
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"hilplant {hilplant.__version__}")
+        raise typer.Exit()
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    pass
 
 
 def main() -> None:

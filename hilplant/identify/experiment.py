@@ -67,7 +67,7 @@ class Run:
 
     @property
     def park_steps(self) -> Samples:
-        """How often the contact has closed since the start (5.2)."""
+        """How often the contact has closed since the start, section 5.2."""
         steps = np.zeros(len(self))
         steps[self.edges] = 1.0
         return np.cumsum(steps)

@@ -1,4 +1,4 @@
-"""Stage 1: a measurement -> the transfer function of each mode -> motor parameters, with their standard errors (5.3).
+"""Stage 1 (section 5.3): a measurement -> the transfer function of each mode -> motor parameters, with standard errors.
 
 (5.7) takes the load as proportional to the speed, but a wiper's load changes with the crank angle. Over a whole
 recording that bends every coefficient, and often leaves none that a motor could have. So only the first `WINDOW_S`

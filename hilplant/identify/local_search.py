@@ -1,4 +1,4 @@
-"""Stage 3: bounded nonlinear least squares over parameters, offsets and starts together (5.6)."""
+"""Stage 3: bounded nonlinear least squares over parameters, offsets and starts together, section 5.6."""
 
 from collections.abc import Callable
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""The park switch as a measurement: contact levels, bounces, and the staircase of park steps (5.2).
+"""The park switch as a measurement: contact levels, bounces, and the staircase of park steps, section 5.2.
 
 A pulse that comes a little late gives no overlap with the measured one and so the same error as no pulse at all; a
 staircase gives an error that grows with the delay (Figures 5-2, 5-3).

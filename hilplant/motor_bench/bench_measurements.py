@@ -1,4 +1,4 @@
-"""Motor parameters measured one by one on a bench (5.4), each with the standard error that its readings give it.
+"""Motor parameters measured one by one on a bench, section 5.4, each with the standard error that its readings give it.
 
 Every function takes readings as plain numbers or as ``uncertainties.ufloat`` (value, standard error); errors are
 carried on to first order. All speeds are the motor shaft's.

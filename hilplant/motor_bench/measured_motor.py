@@ -1,4 +1,4 @@
-"""From readings to the parameters of a motor, each with its standard error (5.4)."""
+"""From readings to the parameters of a motor, each with its standard error, section 5.4."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -27,10 +27,10 @@ class StudyReport(NamedTuple):
 
 
 def thesis_study(bench: str) -> StudyReport:
-    """Put the source's checks beside ours."""
+    """Put the thesis' checks beside ours."""
     checks = thesis_checks(load_bench(bench))
     rows = [[check.where, check.what, check.theirs, check.ours, yes_or_no(check.holds)] for check in checks]
-    table = TextTable("The source's own checks", ("where", "what", "source", "here", "holds"), rows)
+    table = TextTable("The thesis' own checks", ("where", "what", "compared with", "here", "holds"), rows)
     figures = {_key(check): check.ours for check in checks} | {"failed": sum(not c.holds for c in checks)}
     return StudyReport([table], figures, all(check.holds for check in checks))
 

@@ -1,4 +1,4 @@
-"""The source's own checks of its models, one line each, with what this plant does beside them."""
+"""The thesis' own checks of its models, one line each, with what this plant does beside them."""
 
 from dataclasses import dataclass
 
@@ -22,7 +22,8 @@ _SETS = ("table_5_6", "table_5_8", "table_5_9")
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One claim: where it is made, what is looked at, what the source has, what we have, and whether it holds."""
+    """One claim: where it is made, what is looked at, what the thesis has (or, said so, what was
+    computed from it), what we have, and whether it holds."""
 
     where: str
     what: str
@@ -64,7 +65,7 @@ def _steady(stage: str, exact: tuple[float, float], ours: tuple[float, float]) -
     return Check(
         "Table 3-1",
         f"steady state, {stage}, 12 V, against (3.30), (3.31) at rest",
-        f"{exact[0]:.6f} A, {exact[1]:.6f} rad/s",
+        f"computed: {exact[0]:.6f} A, {exact[1]:.6f} rad/s",
         f"{ours[0]:.6f} A, {ours[1]:.6f} rad/s",
         apart < 1e-9,
     )
@@ -118,7 +119,7 @@ def _section_4_6(wipes: list[Wipe]) -> list[Check]:
 
 
 def _table_5_4() -> list[Check]:
-    """Measured currents and speeds of a real motor beside the fitted set, then beside the source's own sets."""
+    """Measured currents and speeds of a real motor beside the fitted set, then beside the thesis' own sets."""
     measured = read_no_load()
     fitted = misses_of(read_motor("table_5_4"), measured.rows)
     checks = [_row(miss) for miss in fitted]
@@ -134,7 +135,7 @@ def _table_5_4() -> list[Check]:
         worst_of_all = max(worst, worst_of_all)
         checks.append(_own_set(name.replace("table_", "Table ").replace("_", "-"), worst))
     checks.append(
-        Check("Table 5-4", "worst miss of the source's own sets", "57 % (recomputed by hand)",
+        Check("Table 5-4", "worst miss of the thesis' own sets", "computed by hand: 57 %",
               f"{100.0 * worst_of_all:.0f} %", round(100.0 * worst_of_all) == 57)
     )  # fmt: skip
     return checks

@@ -10,11 +10,11 @@ app = command_app()
 
 
 @app.command(
-    short_help="Run the source's own checks again.",
+    short_help="Run the thesis' own checks again.",
     epilog="Example: hilplant study thesis",
 )
 def thesis(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
-    """Run the source's own checks of motor, park circuits and mechanics.
+    """Run the thesis' own checks of motor, park circuits and mechanics.
 
     Exit code 1 when one does not hold.
     """
