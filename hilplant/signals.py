@@ -41,7 +41,7 @@ class Inputs(NamedTuple):
         float, flag("ON/OFF relay: 1 connects the brush to the supply, 0 grounds it (braking)", guarded=0.0)
     ] = 0.0
     relay_fast: Annotated[float, flag("FAST/SLOW relay: 1 selects the fast brush, 0 the slow brush", guarded=0.0)] = 0.0
-    supply_v: Annotated[float, real("V", 0.0, 40.0, "supply voltage at the ON/OFF relay")] = 13.5
+    supply_v: Annotated[float, real("V", -16.0, 100.0, "supply voltage, of an ideal battery")] = 13.5
     screen: Annotated[
         float, real("", 0.0, 1.0, "wetness of the windscreen: 0 dry, 0.5 tacky, 1 wet", names=SCREENS)
     ] = 0.0
@@ -68,9 +68,9 @@ class Inputs(NamedTuple):
 class Outputs(NamedTuple):
     """What the plant shows at each tick, after the inputs of that tick and before the motor moves on."""
 
-    supply_v: Annotated[float, real("V", 0.0, 40.0, "supply voltage in this tick")]
+    supply_v: Annotated[float, real("V", -40.0, 110.0, "potential of terminal 30, behind the supply's resistance")]
     terminal_v: Annotated[
-        float, real("V", -40.0, 40.0, "voltage from the connected brush to the common one; 0 if shorted or open")
+        float, real("V", -110.0, 110.0, "voltage from the connected brush to the common one; 0 if shorted or open")
     ]
     current_a: Annotated[float, real("A", -500.0, 500.0, "armature current, positive from the brush to ground")]
     motor_speed_rad_s: Annotated[float, real("rad/s", -2000.0, 2000.0, "speed of the motor shaft")]
@@ -103,12 +103,13 @@ class Outputs(NamedTuple):
     ]
     terminal_53_v: Annotated[float, real("V", -500.0, 500.0, "terminal 53, slow brush, against ground")]
     terminal_53b_v: Annotated[float, real("V", -500.0, 500.0, "terminal 53b, fast brush, against ground")]
-    terminal_53e_v: Annotated[float, real("V", -40.0, 40.0, "terminal 53e, from the park contact, against ground")]
-    terminal_31_v: Annotated[float, real("V", -40.0, 40.0, "terminal 31, common brush, against ground")]
+    terminal_53e_v: Annotated[float, real("V", -110.0, 110.0, "terminal 53e, from the park contact, against ground")]
+    terminal_31_v: Annotated[float, real("V", -110.0, 110.0, "terminal 31, common brush, against ground")]
     left_force_n: Annotated[float, real("N", 0.0, 1e6, "force of the left blade on the screen, less lift")]
     right_force_n: Annotated[float, real("N", 0.0, 1e6, "force of the right blade on the screen, less lift")]
     load_mode: Annotated[float, choice(IN_CHARGE, "which model gives the torque of the load, and why")]
     motor_mode: Annotated[float, choice(IN_CHARGE, "which model moves the motor, and why")]
+    supply_current_a: Annotated[float, real("A", -2000.0, 2000.0, "current that leaves the supply")]
 
 
 class Status(NamedTuple):

@@ -62,8 +62,9 @@ def build_plant(spot: Spot, plant: PlantSection, step_ns: int) -> Plant | None:
     left, right = mechanics.wiper.left.arm, mechanics.wiper.right.arm
     networks = row_of_networks(trained.numbers, mover.numbers)
     parameters = Parameters(
-        step_ns / SECOND_NS, motor.record(), _contact(park_switch, step_ns), record, left, right, mover.place, networks
-    )
+        step_ns / SECOND_NS, motor.record(), _contact(park_switch, step_ns), record, left, right, mover.place,
+        networks=networks,
+    )  # fmt: skip
     check_bounds(spot.inner("load"), trained, parameters, mechanics.table)
     return Plant(parameters, mechanics.table, motor, load, plant.screen, blades, mechanics, park_switch, trained.file)
 

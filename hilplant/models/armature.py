@@ -34,6 +34,7 @@ class Drive(NamedTuple):
     inertia: float
     damping: float  # of the motor and of its load
     dry_torque: float  # opposes motion whatever the speed: dry friction, and the constant part of the load
+    push: float = 0.0  # drives in the wiping direction whatever the speed: current through a second brush
 
 
 @compiled
@@ -58,10 +59,11 @@ def propagator(drive: Drive, time: float) -> tuple[float, float, float, float]:
 
 @compiled
 def glide(motion: Motion, drive: Drive, torque: float, time: float) -> Motion:
-    """Return the motion after `time` while a constant `torque` [N m] works against positive speed.
+    """Return the motion after `time` while a constant `torque` [N m], less the push, works against positive speed.
 
     Exact, the turned angle too: it follows from the time integrals of (3.30), not from a rule of quadrature.
     """
+    torque -= drive.push
     if drive.constant == 0.0:
         return coast(motion, drive, torque, time)
     strength = drive.resistance * drive.damping + drive.constant * drive.constant
@@ -96,4 +98,4 @@ def coast(motion: Motion, drive: Drive, torque: float, time: float) -> Motion:
 @compiled
 def acceleration(motion: Motion, drive: Drive, torque: float) -> float:
     """Return the acceleration of the motor shaft [rad/s2]."""
-    return (drive.constant * motion.current - drive.damping * motion.speed - torque) / drive.inertia
+    return (drive.constant * motion.current + drive.push - drive.damping * motion.speed - torque) / drive.inertia

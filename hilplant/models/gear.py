@@ -26,20 +26,23 @@ def through_gear(load: Resistance, direction: float, motion: Motion, connection:
     ratio = motor.gear_ratio
     brush = connection.brush
     constant = brush.constant_v_s if connection.closed > 0.5 else 0.0
-    torque = direction * (constant * motion.current - motor.damping_n_m_s * motion.speed) - motor.coulomb_torque_n_m
+    damping = motor.damping_n_m_s + connection.second.damping_n_m_s
+    pull = constant * motion.current + connection.second.push_n_m - damping * motion.speed
+    torque = direction * pull - motor.coulomb_torque_n_m
     dry = direction * load.bias + load.dry
     driving = (
         load.inertia * torque / ratio + (dry + load.slope * abs(motion.speed) / ratio) * motor.inertia_kg_m2 >= 0.0
     )
     passing = 1.0 / (ratio * motor.gear_efficiency) if driving else motor.gear_back_efficiency / ratio
     return Drive(
-        voltage=connection.terminal_v if connection.closed > 0.5 else 0.0,
+        voltage=connection.source_v if connection.closed > 0.5 else 0.0,
         resistance=brush.resistance_ohm,
         inductance=brush.inductance_henry,
         constant=constant,
         inertia=motor.inertia_kg_m2 + load.inertia * passing / ratio,
-        damping=motor.damping_n_m_s + load.slope * passing / ratio,
+        damping=damping + load.slope * passing / ratio,
         dry_torque=motor.coulomb_torque_n_m + dry * passing,
+        push=connection.second.push_n_m,
     )
 
 

@@ -39,7 +39,7 @@ def advance(motion: Motion, drive: Drive, duration: float) -> Motion:
     After `STRETCHES` stretches without an end the shaft stands still for what is left of the step: the answer
     that adds no energy. Costs one exponential of the matrix, and some ten more for each event.
     """
-    if drive.dry_torque == 0.0:
+    if drive.dry_torque == 0.0 and drive.push == 0.0:
         return glide(motion, drive, 0.0, duration)
     hold = Hold(drive.dry_torque, drive.dry_torque)
     left, swings = duration, 0
@@ -63,7 +63,7 @@ def direction_of(motion: Motion, drive: Drive, hold: Hold) -> float:
     """Return +1 or -1 while the shaft turns or breaks away, 0 while it sticks."""
     if motion.speed != 0.0:
         return math.copysign(1.0, motion.speed)
-    torque = drive.constant * motion.current
+    torque = drive.constant * motion.current + drive.push
     if torque > hold.forwards:
         return 1.0
     return -1.0 if -torque > hold.backwards else 0.0
@@ -87,10 +87,10 @@ def stick(motion: Motion, drive: Drive, hold: Hold, left: float) -> tuple[Motion
     logarithm. There the current is set a few bits beyond, so that what follows sees a sliding shaft.
     """
     final = drive.voltage / drive.resistance
-    torque = drive.constant * final
+    torque = drive.constant * final + drive.push
     if torque > hold.forwards or -torque > hold.backwards:
         held = hold.forwards if torque > hold.forwards else -hold.backwards
-        threshold = held / drive.constant
+        threshold = (held - drive.push) / drive.constant
         ratio = (final - motion.current) / (final - threshold)
         wait = math.log(max(1.0, ratio)) * drive.inductance / drive.resistance
         if wait < left:
@@ -125,12 +125,12 @@ def dips(start: Motion, end: Motion, drive: Drive, sign: float) -> bool:
     if the voltage, less the back-EMF at the start, can drive that much current. Else it takes a speed that falls at
     the start and rises at the end.
     """
-    dry = drive.dry_torque
+    dry = drive.dry_torque - sign * drive.push
     lasting = sign * (drive.voltage - drive.constant * start.speed) * drive.constant > drive.resistance * dry
     if lasting and sign * drive.constant * start.current > dry:
         return False
-    falls = sign * acceleration(start, drive, sign * dry) < 0.0
-    return falls and sign * acceleration(end, drive, sign * dry) > 0.0
+    falls = sign * acceleration(start, drive, sign * drive.dry_torque) < 0.0
+    return falls and sign * acceleration(end, drive, sign * drive.dry_torque) > 0.0
 
 
 @compiled

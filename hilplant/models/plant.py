@@ -85,7 +85,8 @@ def measured(  # noqa: PLR0913, PLR0917
     tables, place = crank.tables, crank.place
     left_rocker, right_rocker = value(tables, place, LEFT_ROCKER), value(tables, place, RIGHT_ROCKER)
     return Outputs(
-        supply_v=inputs.supply_v,
+        supply_v=connection.supply_v,
+        supply_current_a=connection.supply_current_a,
         terminal_v=connection.terminal_v,
         current_a=motion.current,
         motor_speed_rad_s=motion.speed,

@@ -97,6 +97,29 @@ class Arm(NamedTuple):
     length_m: Annotated[float, quantity("m", "distance from the pivot to the blade")]
 
 
+class Wire(NamedTuple):
+    """The wire of one motor terminal, and what touches it at the motor's end."""
+
+    resistance_ohm: Annotated[float, quantity("Ohm", "resistance in series")] = 0.0
+    opened: Annotated[float, flag("1 where the wire is broken")] = 0.0
+    to_supply_s: Annotated[float, quantity("S", "conductance from the terminal to the supply, terminal 30")] = 0.0
+    to_ground_s: Annotated[float, quantity("S", "conductance from the terminal to ground, terminal 31")] = 0.0
+
+
+class Wiring(NamedTuple):
+    """Supply and wires between the switches and the motor; see :mod:`hilplant.models.terminals`."""
+
+    altered: Annotated[float, flag("1 where any of the others is not as declared here")] = 0.0
+    supply_resistance_ohm: Annotated[float, quantity("Ohm", "resistance of battery and harness")] = 0.0
+    supply_opened: Annotated[float, flag("1 where the supply is cut off: a blown fuse, main switch off")] = 0.0
+    ground_offset_v: Annotated[float, quantity("V", "potential of the motor's ground against the ECU's")] = 0.0
+    brushes_s: Annotated[float, quantity("S", "conductance between the terminals 53 and 53b")] = 0.0
+    wire_53: Wire = Wire()
+    wire_53b: Wire = Wire()
+    wire_53e: Wire = Wire()
+    wire_31: Wire = Wire()
+
+
 #: What stands behind the parameters of a plant without networks.
 NO_NETWORKS = np.zeros(0)
 
@@ -115,6 +138,7 @@ class Parameters(NamedTuple):
     left_arm: Arm
     right_arm: Arm
     motor_model: Annotated[float, quantity("", "index in motor_choice.MOTORS")] = 0.0
+    wiring: Wiring = Wiring()
     networks: Any = NO_NETWORKS
 
 

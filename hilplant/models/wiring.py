@@ -22,10 +22,13 @@ WIPING, TURNING_BACK, PARKED = 0.0, 1.0, 2.0
 
 
 class Lead(NamedTuple):
-    """A wire: its potential [V] where something drives it (`driven` 1), or left open (`driven` 0)."""
+    """Where a wire begins: at the supply (`share` 1) or at ground (0), or nowhere (`driven` 0)."""
 
-    potential_v: float
+    share: float
     driven: float
+
+
+SUPPLY, GROUND, NOTHING = Lead(1.0, 1.0), Lead(0.0, 1.0), Lead(0.0, 0.0)
 
 
 class Leads(NamedTuple):
@@ -56,11 +59,10 @@ def digital(inputs: Inputs) -> Leads:
     The ON/OFF relay gives battery or ground, the FAST/SLOW relay takes that to one brush and leaves the other open.
     So off is a short circuit through the armature, which brakes.
     """
-    battery, ground, nothing = Lead(inputs.supply_v, 1.0), Lead(0.0, 1.0), Lead(0.0, 0.0)
-    on_off = battery if inputs.relay_on > 0.5 else ground
+    on_off = SUPPLY if inputs.relay_on > 0.5 else GROUND
     if inputs.relay_fast > 0.5:
-        return Leads(nothing, on_off, ground, nothing, 0.0)
-    return Leads(on_off, nothing, ground, nothing, 0.0)
+        return Leads(NOTHING, on_off, GROUND, NOTHING, 0.0)
+    return Leads(on_off, NOTHING, GROUND, NOTHING, 0.0)
 
 
 @compiled
@@ -69,19 +71,18 @@ def mechanical(inputs: Inputs, contact: Contact) -> Leads:
 
     While the contact bounces it touches neither battery nor ground.
     """
-    battery, ground, nothing = Lead(inputs.supply_v, 1.0), Lead(0.0, 1.0), Lead(0.0, 0.0)
     position = switch_position(inputs)
     # the park contact: battery on the way, ground at park
-    park = ground if contact.closed > 0.5 else battery
+    park = GROUND if contact.closed > 0.5 else SUPPLY
     if contact.shown != contact.closed:
-        park = nothing
+        park = NOTHING
     # switch 1: battery to the slow or the fast brush, or to none
-    slow = battery if position == SLOW else nothing
-    fast = battery if position == FAST else nothing
+    slow = SUPPLY if position == SLOW else NOTHING
+    fast = SUPPLY if position == FAST else NOTHING
     # switch 2: when off, the park contact to the slow brush
     if position == OFF:
-        return Leads(park, fast, ground, park, 1.0)
-    return Leads(slow, fast, ground, park, 0.0)
+        return Leads(park, fast, GROUND, park, 1.0)
+    return Leads(slow, fast, GROUND, park, 0.0)
 
 
 @compiled
@@ -92,20 +93,19 @@ def depressed(inputs: Inputs, contact: Contact, park_phase: float) -> Leads:
     motor runs to park leads through switch 1, contact B and switch 2: were it not through B, battery would meet
     ground in the next position, in which B feeds the slow brush.
     """
-    battery, ground, nothing = Lead(inputs.supply_v, 1.0), Lead(0.0, 1.0), Lead(0.0, 0.0)
     position = switch_position(inputs)
     # switch 2: ground to the slow or the fast brush, when off to contact B
-    slow = ground if position == SLOW else nothing
-    fast = ground if position == FAST else nothing
-    off = ground if position == OFF else nothing
+    slow = GROUND if position == SLOW else NOTHING
+    fast = GROUND if position == FAST else NOTHING
+    off = GROUND if position == OFF else NOTHING
     # park contacts: A for the common brush, B for the slow one
-    contact_a, contact_b = battery, off
+    contact_a, contact_b = SUPPLY, off
     if park_phase == TURNING_BACK:
-        contact_a, contact_b = ground, battery
+        contact_a, contact_b = GROUND, SUPPLY
     bouncing = contact.closed > 0.5 and contact.shown != contact.closed
     if park_phase == PARKED or (park_phase == TURNING_BACK and bouncing):
-        contact_a, contact_b = nothing, nothing
+        contact_a, contact_b = NOTHING, NOTHING
     # switches 1 and 3: when off, contact B to the slow brush and contact A to the common one; else battery to it
     if position == OFF:
         return Leads(contact_b, fast, contact_a, contact_b, 1.0)
-    return Leads(slow, fast, battery, contact_b, 0.0)
+    return Leads(slow, fast, SUPPLY, contact_b, 0.0)

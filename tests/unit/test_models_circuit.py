@@ -160,7 +160,7 @@ def test_the_guard_cuts_the_armature_out_of_every_circuit(circuit: str) -> None:
     for relays, phase in product((OFF, OFF_FAST, SLOW, FAST), (WIPING, TURNING_BACK, PARKED)):
         free = connection(circuit, relays, AWAY, phase)
         held = connection(circuit, relays, AWAY, phase, MOVING._replace(guard=1.0))
-        assert held == free._replace(terminal_v=0.0, closed=0.0)
+        assert held == free._replace(source_v=0.0, terminal_v=0.0, closed=0.0, supply_current_a=0.0)
 
 
 DEPRESSED = SWITCH._replace(circuit=2.0)
