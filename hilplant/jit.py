@@ -81,6 +81,9 @@ def compiled(function: Function) -> Function:
 #: The lines of a function's body, and what the names in it mean.
 Written = tuple[list[str], dict[str, Any]]
 
+#: Who writes the body of a function that :func:`written_out` has registered.
+WRITTEN_OUT: dict[Callable[..., Any], Callable[..., Written]] = {}
+
 
 def written_out(function: Callable[..., Any]) -> Callable[[Callable[..., Written]], Callable[..., Written]]:
     """Let compiled code call `function`, with a body that is written for the records among its arguments.
@@ -96,6 +99,7 @@ def written_out(function: Callable[..., Any]) -> Callable[[Callable[..., Written
             exec("\n    ".join([f"def body({arguments}):", *lines]), names)
             return cast(Callable[..., Any], names["body"])
 
+        WRITTEN_OUT[function] = writer
         # options that are left out would come from whoever happens to call it first
         numba.extending.overload(function, jit_options=_OPTIONS, strict=False)(implementation)
         return writer

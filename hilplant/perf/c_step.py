@@ -1,94 +1,119 @@
-"""The step by hand in C, compiled where it is measured: the limit for the compiled Python."""
+"""The step in C, compiled where it is measured: the limit for the compiled Python."""
 
 import ctypes
-import shutil
-import subprocess
 from collections.abc import Callable, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.c_source import compiler as c_compiler
+from hilplant.c_source.c_types import BOOLEAN, Array, Type
+from hilplant.c_source.compiler import FLAGS, compile_library
+from hilplant.c_source.plant_files import ROW, ROWS, TABLES, WRITABLE_ROW, WRITABLE_ROWS, plant_c, plant_h
+from hilplant.failure import Failure
+from hilplant.models.batch import simulate_columns
+from hilplant.models.torque_samples import network_tangents
 from hilplant.perf.results import NotMeasurable
 
-#: Contraction to fused multiply-add is off, as in the compiled Python: the digits shall be the same.
-FLAGS = ("-O3", "-ffp-contract=off", "-std=c11")
+__all__ = ["FLAGS", "Rows", "SimulateRows", "Tangents", "compile_batch", "compile_network", "compile_step", "compiler"]
+
 WITH_OPENMP = "-fopenmp"
 
 Rows = NDArray[np.float64]
 #: State, inputs [ticks, inputs], parameters, tables, outputs [ticks, outputs].
 SimulateRows = Callable[[Rows, Rows, Rows, Rows, Rows], None]
+#: Numbers of the networks, whether the screen is wet, states [n, 2], torques and derivatives [n, 3].
+Tangents = Callable[[Rows, bool, Rows, Rows], None]
 
-_SOURCE = Path(__file__).with_name("step.c")
-_WITH_NETWORKS = Path(__file__).with_name("networks.c")
-_DOUBLES = ctypes.POINTER(ctypes.c_double)
+#: What is measured besides the step, and the arrays that it takes.
+_MORE: dict[Any, tuple[Type, ...]] = {
+    simulate_columns: (
+        WRITABLE_ROW, ROWS, ROW, TABLES, Array((None,), of="int64_t"), WRITABLE_ROWS, WRITABLE_ROW,
+    ),
+    network_tangents: (ROW, BOOLEAN, ROWS, WRITABLE_ROWS),
+}  # fmt: skip
+
+
+class Plant(ctypes.Structure):
+    """``hilplant_plant`` in plant.h."""
+
+    _fields_ = (
+        ("parameters", ctypes.c_void_p),
+        ("parameter_count", ctypes.c_int64),
+        ("tables", ctypes.c_void_p),
+        ("knots", ctypes.c_int64),
+        ("channels", ctypes.c_int64),
+    )
+
+    @classmethod
+    def of(cls, parameters: Rows, tables: Rows) -> "Plant":
+        """Return the plant of packed parameters and tables, which must live as long as it does."""
+        return cls(_at(parameters), len(parameters), _at(tables), *tables.shape[:2])
 
 
 def compiler() -> str:
     """Return the name and version of the C compiler."""
-    if shutil.which("gcc") is None:
-        raise NotMeasurable("gcc is not here; as root: apt-get install gcc")
-    said = subprocess.run(["gcc", "-dumpfullversion"], capture_output=True, text=True, check=False)
-    return f"gcc {said.stdout.strip()}"
+    try:
+        return c_compiler.compiler()
+    except Failure as error:
+        raise NotMeasurable(str(error)) from error
 
 
 def compile_step(folder: Path, *more_flags: str) -> SimulateRows:
-    """Compile step.c into `folder` and return its loop, which takes the same arrays as `simulate_rows`."""
-    function = _library(folder, more_flags).simulate_rows
+    """Compile the step into `folder` and return its loop, which takes the same arrays as `simulate_rows`."""
+    function = _library(folder, more_flags).hilplant_simulate
 
     def simulate(state: Rows, inputs: Rows, parameters: Rows, tables: Rows, outputs: Rows) -> None:
-        arrays = (state, inputs, parameters, tables, outputs)
-        function(*_addresses(arrays), _shape(arrays))
+        plant = Plant.of(parameters, tables)
+        function(ctypes.byref(plant), _at(state), ctypes.c_int64(len(inputs)), _at(inputs), _at(outputs))
 
     return simulate
 
 
 def compile_batch(folder: Path, columns: Sequence[int], *more_flags: str) -> SimulateRows:
-    """Compile step.c with OpenMP and return its loop over many sets on all processors.
+    """Compile the step with OpenMP and return its loop over many sets on all processors.
 
     It takes states [sets, states], inputs [ticks, inputs] of all sets, parameters [sets, parameters], tables of all
-    sets, and outputs [sets, ticks, columns], of which it fills those outputs whose places are in `columns`.
+    sets, and outputs [sets, ticks, columns], of which it fills those outputs whose indices are in `columns`.
     """
     function = _library(folder, (WITH_OPENMP, *more_flags)).simulate_batch
-    places = (ctypes.c_long * len(columns))(*columns)
+    indices = (ctypes.c_int64 * len(columns))(*columns)
 
     def simulate(states: Rows, inputs: Rows, parameters: Rows, tables: Rows, outputs: Rows) -> None:
-        arrays = (states, inputs, parameters, tables, outputs)
-        function(*_addresses(arrays), _shape(arrays), places)
+        plants = (Plant * len(parameters))(*(Plant.of(row, tables) for row in parameters))
+        sets, ticks, count = (ctypes.c_int64(each) for each in (len(parameters), len(inputs), len(columns)))
+        function(plants, sets, _at(states), ticks, _at(inputs), count, indices, _at(outputs))
 
     return simulate
 
 
-def compile_networks(folder: Path, *more_flags: str) -> SimulateRows:
-    """Compile networks.c into `folder` and return its loop, for benches with a torque or a motor network."""
-    function = _library(folder, more_flags, _WITH_NETWORKS).simulate_networks
+def compile_network(folder: Path, *more_flags: str) -> Tangents:
+    """Compile the torque network into `folder`; the function takes the same arrays as `network_tangents`."""
+    function = _library(folder, more_flags).torque_tangents
 
-    def simulate(state: Rows, inputs: Rows, parameters: Rows, tables: Rows, outputs: Rows) -> None:
-        arrays = (state, inputs, parameters, tables, outputs)
-        function(*_addresses(arrays), _shape(arrays))
+    def tangents(numbers: Rows, wet: bool, states: Rows, into: Rows) -> None:
+        length, count = ctypes.c_int64(len(numbers)), ctypes.c_int64(len(states))
+        function(_at(numbers), length, ctypes.c_int(wet), _at(states), count, _at(into))
 
-    return simulate
-
-
-def _library(folder: Path, more_flags: tuple[str, ...], source: Path = _SOURCE) -> ctypes.CDLL:
-    compiler()
-    library = folder / f"{source.stem}{''.join(more_flags)}.so"
-    command = ["gcc", *FLAGS, *more_flags, "-shared", "-fPIC", str(source), "-o", str(library), "-lm"]
-    ended = subprocess.run(command, capture_output=True, text=True, check=False)
-    if ended.returncode:
-        raise NotMeasurable(f"gcc: {(ended.stderr.strip() or 'no message').splitlines()[0]}")
-    return ctypes.CDLL(str(library))
+    return tangents
 
 
-def _addresses(arrays: Sequence[Rows]) -> list[Any]:
-    if not all(array.dtype == np.float64 and array.flags.c_contiguous for array in arrays):
+@cache
+def _texts() -> tuple[str, str]:
+    return plant_c(_MORE, Path(__file__).with_name("measured.c").read_text(encoding="utf-8")), plant_h()
+
+
+def _library(folder: Path, more_flags: tuple[str, ...]) -> ctypes.CDLL:
+    try:
+        return compile_library(*_texts(), folder, *more_flags)
+    except Failure as error:
+        raise NotMeasurable(str(error)) from error
+
+
+def _at(array: Rows) -> ctypes.c_void_p:
+    if array.dtype != np.float64 or not array.flags.c_contiguous:
         raise ValueError("the step in C takes contiguous arrays of 64-bit floats")
-    return [array.ctypes.data_as(_DOUBLES) for array in arrays]
-
-
-def _shape(arrays: Sequence[Rows]) -> Any:
-    states, inputs, parameters, tables, outputs = arrays
-    sets = len(parameters) if parameters.ndim > 1 else 1
-    widths = (array.shape[-1] for array in (states, inputs, parameters, outputs))
-    return (ctypes.c_long * 8)(sets, len(inputs), *tables.shape[:2], *widths)
+    return ctypes.c_void_p(array.ctypes.data)

@@ -1,4 +1,4 @@
-"""What a minute costs with networks in place of load and motor, against the same by hand in C."""
+"""What a minute costs with networks in place of load and motor, against the same in C."""
 
 import time
 from pathlib import Path
@@ -10,7 +10,7 @@ import numpy as np
 from hilplant.bench import Bench, load_bench
 from hilplant.models.narx import NETWORK
 from hilplant.models.plant import simulate_rows
-from hilplant.perf.c_step import Rows, SimulateRows, compile_networks
+from hilplant.perf.c_step import Rows, SimulateRows, compile_step
 from hilplant.perf.minute import mixed_minute
 from hilplant.perf.results import Goal, Measured, NotMeasurable, Row
 from hilplant.perf.samples import alternate
@@ -35,7 +35,7 @@ def measure() -> Measured:
     """Run a calm minute with each kind of network, in turn by both languages; start-up apart."""
     measured = Measured()
     with TemporaryDirectory(prefix="hilplant-c-") as folder:
-        in_c = compile_networks(Path(folder))
+        in_c = compile_step(Path(folder))
         for name in _BENCHES:
             _measure_bench(name, in_c, measured)
     return measured

@@ -1,4 +1,4 @@
-"""What one step of the plant costs in compiled Python, against the same step by hand in C."""
+"""What one step of the plant costs in compiled Python, against the same step in C."""
 
 import platform
 import time

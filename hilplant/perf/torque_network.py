@@ -1,9 +1,6 @@
-"""What one evaluation of the torque network costs in compiled Python, against the same by hand in C."""
+"""What one evaluation of the torque network costs in compiled Python, against the same in C."""
 
-import ctypes
-import subprocess
 import time
-from collections.abc import Callable
 from pathlib import Path
 from statistics import median
 from tempfile import TemporaryDirectory
@@ -12,36 +9,13 @@ import numpy as np
 
 from hilplant.bench import load_bench
 from hilplant.models.torque_samples import network_tangents
-from hilplant.perf.c_step import FLAGS, Rows, compiler
-from hilplant.perf.results import Goal, Measured, NotMeasurable, Row
+from hilplant.perf.c_step import Rows, Tangents, compile_network
+from hilplant.perf.results import Goal, Measured, Row
 from hilplant.perf.samples import alternate
 from hilplant.units import SECOND_NS, TURN_RAD
 
-Tangents = Callable[[Rows, bool, Rows, Rows], None]
-
 _ROUNDS, _SAMPLES = 40, 20_000
-_SOURCE = Path(__file__).with_name("torque_network.c")
-_DOUBLES = ctypes.POINTER(ctypes.c_double)
 _GOAL = Goal(1.2)
-
-
-def compile_network(folder: Path) -> Tangents:
-    """Compile torque_network.c into `folder`; the function takes the same arrays as `network_tangents`."""
-    compiler()
-    library = folder / "torque_network.so"
-    command = ["gcc", *FLAGS, "-shared", "-fPIC", str(_SOURCE), "-o", str(library), "-lm"]
-    ended = subprocess.run(command, capture_output=True, text=True, check=False)
-    if ended.returncode:
-        raise NotMeasurable(f"gcc: {(ended.stderr.strip() or 'no message').splitlines()[0]}")
-    function = ctypes.CDLL(str(library)).network_tangents
-    function.argtypes = [_DOUBLES, ctypes.c_int, _DOUBLES, ctypes.c_long, _DOUBLES]
-    function.restype = None
-
-    def tangents(numbers: Rows, wet: bool, states: Rows, into: Rows) -> None:
-        at = [array.ctypes.data_as(_DOUBLES) for array in (numbers, states, into)]
-        function(at[0], int(wet), at[1], len(states), at[2])
-
-    return tangents
 
 
 def measure() -> Measured:

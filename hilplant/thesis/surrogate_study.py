@@ -12,7 +12,7 @@ from hilplant.models.load import LOADS
 from hilplant.models.narx import NETWORK
 from hilplant.models.plant import simulate_rows
 from hilplant.models.row import pack
-from hilplant.perf.c_step import Rows, compile_networks
+from hilplant.perf.c_step import Rows, compile_step
 from hilplant.perf.networks_cost import calm_minute
 from hilplant.perf.samples import alternate
 from hilplant.perf.step_cost import timed_s
@@ -94,7 +94,7 @@ def compare(seconds: float) -> list[Compared]:
     runs = {name: drive(bench, seconds, look_ms=1.0) for name, bench in physical.items()}
     found = []
     with TemporaryDirectory(prefix="hilplant-c-") as folder:
-        in_c = compile_networks(Path(folder))
+        in_c = compile_step(Path(folder))
         for name, pair in pairs.items():
             wanted = runs[pair.physical.name]
             ours = wanted if pair.bench is pair.physical else drive(pair.bench, seconds, look_ms=1.0)

@@ -32,6 +32,7 @@ ARROWS: dict[str, set[str]] = {
     },
     "verdicts": {"checked_yaml"},
     "doctor": {"extras", "jit"},
+    "c_source": {"failure", "jit", "atomic_write", "declaration", "signals", "models", "bench"},
 }
 #: The stand-in ECU decides without knowing that there is a bus, a bench or a clock.
 PURE_ECU = {

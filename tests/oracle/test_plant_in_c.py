@@ -1,4 +1,4 @@
-"""The step by hand in C and the compiled Python give the same bits, through every branch of the step."""
+"""The step in C and the compiled Python give the same bits, through every branch of the step."""
 
 import math
 from pathlib import Path
@@ -147,7 +147,7 @@ def test_the_random_scenarios_reach_every_branch(step_in_c: SimulateRows) -> Non
 
 
 def test_the_batch_in_c_is_the_batch(tmp_path: Path) -> None:
-    """The yardstick of the batch does the same work: the same columns of the same sets, bit for bit."""
+    """The batch in C does the same work: the same columns of the same sets, bit for bit."""
     random = np.random.default_rng(3)
     plants = [any_plant(random, load, "digital") for load in LOADS for _ in range(4)]
     plants = [plant._replace(load=plant.load._replace(points=1.0)) for plant in plants]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from hilplant.bench.load_files import TorqueFile
 from hilplant.models.torque_network import network_tangent
 from hilplant.models.torque_samples import network_tangents, network_torques
-from hilplant.perf.torque_network import compile_network
+from hilplant.perf.c_step import compile_network
 
 Floats = NDArray[np.float64]
 STATES = np.column_stack([np.linspace(0.0, 6.28, 500), np.random.default_rng(1).uniform(1.0, 7.0, 500)])
@@ -66,5 +66,5 @@ def test_c_gives_the_same_numbers(tmp_path: Path, wet: bool) -> None:
     ours, theirs = np.empty((2, len(STATES), 3))
     network_tangents(numbers, wet, STATES, ours)
     compile_network(tmp_path)(numbers, wet, STATES, theirs)
-    assert ours == pytest.approx(theirs, rel=1e-12, abs=1e-12)
+    assert ours.tobytes() == theirs.tobytes()
     assert np.ptp(ours[:, 0]) > 1.0
