@@ -1,5 +1,6 @@
 """The command line: its options, and what an error looks like; the commands are in `hilplant.cli.commands`."""
 
+import io
 import sys
 from typing import Annotated
 
@@ -45,6 +46,9 @@ def main() -> None:
 
     Where data were judged and will not do it is exit code 1.
     """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a console of another code page ends no command
     debug = "--debug" in sys.argv and sys.argv[1] != "vcan"  # behind vcan it is the command's own
     arguments = [argument for argument in sys.argv[1:] if not debug or argument != "--debug"]
     try:

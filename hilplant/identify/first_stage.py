@@ -69,13 +69,19 @@ def first_stage(data: Measurement, gear_ratio: float, drag_n_m_s: float | None =
             f"{data.source}: nothing says whether the motor runs slow or fast; name a column (--columns fast=NAME) or "
             "say --mode slow"
         )
-    results = {}
+    results: dict[str, ModeResult] = {}
+    failures: list[str] = []
     drag = drag_n_m_s or load_constant(gear_ratio=gear_ratio)
     steps = voltage_steps(data.voltage_v, data.period_s)
     for mode, value in (("slow", 0.0), ("fast", 1.0)):
         mask = running(data) & (data.fast == value)
         if windows := _windows(data, mask, steps):
-            results[mode] = _mode(data, mode, windows, _turns(data, mask, gear_ratio), drag)
+            try:
+                results[mode] = _mode(data, mode, windows, _turns(data, mask, gear_ratio), drag)
+            except Failure as error:
+                failures.append(str(error))
+    if failures and not results:
+        raise Failure("; ".join(failures))
     if not results:
         text = "no step of the voltage with the motor on; record switching on at several voltages"
         raise Failure(f"{data.source}: {text}")
@@ -101,6 +107,11 @@ def _mode(data: Measurement, mode: str, windows: list[slice], turns: list[_Turn]
         found = fit(stretches, data.period_s, friction=True)
     except Failure as error:
         raise Failure(f"{data.source}, {mode} mode: {error}") from error
+    if not _sound(found):
+        raise Failure(
+            f"{data.source}, {mode} mode: the coefficients have no standard errors: the {len(windows)} steps of the "
+            "voltage say too little beside noise and load; record more switching on, at several voltages"
+        )
     named = coefficients(TransferFunction(*correlated_values([*found.function, found.friction], found.covariance)[:4]))
     _refuse_impossible(data, mode, named)
     assumed = by_load(named, drag_n_m_s)
@@ -109,6 +120,13 @@ def _mode(data: Measurement, mode: str, windows: list[slice], turns: list[_Turn]
     constants = [back_emf_constant(turn, assumed.resistance_ohm) for turn in turns]
     motor = by_constant(named, mean_of(constants))
     return ModeResult(mode, found, named, assumed, motor, _load(turns, motor), len(windows), len(turns))
+
+
+def _sound(found: Fit) -> bool:
+    """Say whether coefficients and covariance are such as a fit gives that settled."""
+    values = np.array([*found.function, found.friction])
+    return bool(np.all(np.isfinite(values)) and np.all(np.isfinite(found.covariance))
+        and np.all(np.diag(found.covariance) > 0.0) and found.function.b1 != 0.0)  # fmt: skip
 
 
 def _load(turns: list[_Turn], motor: Equivalent) -> Friction | None:

@@ -1,100 +1,117 @@
 """CAN frames of a log -> channels, through a bus database or through the mapping of a bench."""
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from hilplant.failure import Failure
+from hilplant.measurements.channels import Channels
+from hilplant.measurements.frame_readers import Key, Reader, readers_of
+from hilplant.measurements.frames import FrameSource, LoggedFrames
 from hilplant.measurements.measurement import Channel
 
-#: Gives the values in a payload by the names of their channels; raises ValueError for a payload it cannot read.
-Reads = Callable[[bytes], Iterable[tuple[str, float]]]
-Key = tuple[int, bool]  # identifier, extended
+#: Frames of several buses are put in order; a time that jumps back by more begins another log [s].
+LONGEST_DISORDER_S = 1.0
 
 
-def read_can_log(path: Path, database: Path | None, bench: str | None) -> dict[str, Channel]:
+class _Message:
+    """What was read of the frames of one message, and on which channels of the log they came."""
+
+    def __init__(self, reader: Reader) -> None:
+        self.reader = reader
+        self.times: dict[str, list[float]] = defaultdict(list)
+        self.values: dict[str, list[float]] = defaultdict(list)
+        self.buses: set[str] = set()
+        self.skipped, self.reason = 0, ""
+
+    def take(self, time_s: float, data: bytes) -> None:
+        try:
+            found = list(self.reader.read(data))
+        except ValueError as error:
+            self.skipped, self.reason = self.skipped + 1, self.reason or str(error)
+            return
+        for name, value in found:
+            self.times[name].append(time_s)
+            self.values[name].append(value)
+
+
+def read_can_log(path: Path, log: LoggedFrames, source: FrameSource) -> Channels:
     """Read the signals of every known frame of a log; each channel has the times of its own frames.
+
+    A frame that its message cannot read is skipped, and a note says so.
 
     Raises
     ------
     Failure
-        Without a database and without a bench, or when no frame of the log is in them.
+        Without a database and without a bench; when no frame of the log is in them; when a message comes on several
+        channels of the log, or from two logs behind one another.
 
     """
-    from hilplant.recording.frame_logs import logged_messages
-
-    if database is None and bench is None:
+    if source.database is None and source.bench is None:
         raise Failure(f"{path}: frames need a database or a bench with a mapping: --frames FILE.dbc or --frames BENCH")
-    readers, units = _by_database(database) if database is not None else _by_bench(str(bench))
-    times: dict[str, list[float]] = defaultdict(list)
-    values: dict[str, list[float]] = defaultdict(list)
-    wrong = 0
-    for message in logged_messages(path):
-        read = readers.get((message.arbitration_id, message.is_extended_id))
-        if read is None or message.is_error_frame or message.is_remote_frame:
+    messages, disorder = _taken(path, log, source)
+    _refuse_several_buses(path, messages, source)
+    notes = [*log.notes, *_skips(messages)]
+    notes += [f"{disorder} frames are earlier than the one before: put in order by their time"] * (disorder > 0)
+    read = [message for message in messages.values() if message.times]
+    if not read:
+        channel = f" on channel {source.channel}" if source.channel else ""
+        text = f"{path}: none of its frames{channel} is in {source}; is it the right one?"
+        raise Failure("; ".join([text, *notes]))
+    start_s = min(min(stamps) for message in read for stamps in message.times.values())
+    channels: dict[str, Channel] = {}
+    for message in read:
+        for name, stamps in message.times.items():
+            times, values = np.array(stamps) - start_s, np.array(message.values[name])
+            if disorder:
+                order = np.argsort(times, kind="stable")
+                times, values = times[order], values[order]
+            unit = message.reader.units.get(name, "")
+            channels.setdefault(message.reader.named(name), Channel(times, values, unit, held=True))
+    return Channels(channels, notes)
+
+
+def _taken(path: Path, log: LoggedFrames, source: FrameSource) -> tuple[dict[Key, _Message], int]:
+    """Return what was read by identifier, and how many frames are out of order."""
+    readers = readers_of(source)
+    messages: dict[Key, _Message] = {}
+    disorder, latest_s = 0, -np.inf
+    for frame in log.frames:
+        if source.channel is not None and frame.channel != source.channel:
             continue
         try:
-            found = list(read(bytes(message.data)))
-        except ValueError:
-            wrong += 1
+            reader = readers.of(frame)
+        except Failure as error:
+            raise Failure(f"{path}, {source}: {error}") from error
+        if reader is None:
             continue
-        for name, value in found:
-            times[name].append(message.timestamp)
-            values[name].append(value)
-    if wrong:
-        raise Failure(f"{path}: {wrong} frames are shorter than the database says; is it the right database?")
-    if not times:
-        raise Failure(f"{path}: none of its frames is in {database or bench}; is it the right one?")
-    start_s = min(stamps[0] for stamps in times.values())
-    return {
-        name: Channel(np.array(times[name]) - start_s, np.array(values[name]), units.get(name, ""), held=True)
-        for name in times
-    }
+        if not np.isfinite(frame.time_s):
+            raise Failure(f"{path}: a frame of {reader.message} has no time")
+        if frame.time_s < latest_s:
+            disorder += 1
+            if frame.time_s < latest_s - LONGEST_DISORDER_S:
+                text = f"the time jumps back from {latest_s:.6f} to {frame.time_s:.6f} s: two logs in one file; cut it"
+                raise Failure(f"{path}: {text} there")
+        latest_s = max(latest_s, frame.time_s)
+        key = frame.identifier, frame.extended
+        message = messages.get(key) or messages.setdefault(key, _Message(reader))
+        message.buses.add(frame.channel)
+        message.take(frame.time_s, frame.data)
+    return messages, disorder
 
 
-def _by_database(path: Path) -> tuple[dict[Key, Reads], dict[str, str]]:
-    from hilplant.bus.database import load_database
-
-    readers: dict[Key, Reads] = {}
-    units: dict[str, str] = {}
-    for message in load_database(path).messages:
-        readers[message.frame_id, message.is_extended_frame] = _database_reader(message)
-        units.update({f"{message.name}.{signal.name}": signal.unit or "" for signal in message.signals})
-    return readers, units
+def _refuse_several_buses(path: Path, messages: dict[Key, _Message], source: FrameSource) -> None:
+    for (identifier, _), message in messages.items():
+        if len(message.buses) > 1:
+            buses = sorted(message.buses)
+            text = f"{message.reader.message} (0x{identifier:X}) comes on channels {' and '.join(buses)}"
+            raise Failure(f"{path}: {text}; say which one: --frames {source}@{buses[0]}")
 
 
-def _database_reader(message: Any) -> Reads:
-    def read(data: bytes) -> Iterable[tuple[str, float]]:
-        try:
-            decoded: Mapping[str, Any] = message.decode(data, decode_choices=False)
-        except Exception as error:  # cantools and bitstruct have errors of their own
-            raise ValueError(str(error)) from error
-        return [(f"{message.name}.{name}", float(value)) for name, value in decoded.items()]
-
-    return read
-
-
-def _by_bench(name: str) -> tuple[dict[Key, Reads], dict[str, str]]:
-    """Read what the plant sends and is sent; an output comes before an input of the same name."""
-    from hilplant.bench import load_bench
-    from hilplant.signals import ECU_HEARD, INPUTS
-
-    bench = load_bench(name)
-    readers: dict[Key, Reads] = {}
-    for messages, signals in ((bench.ecu_side().receive, ECU_HEARD), (bench.receive, INPUTS)):
-        for message in messages:
-            names = tuple(signals[index].name for index in message.targets)
-            readers.setdefault((message.identifier, message.extended), _bench_reader(message, names))
-    return readers, {signal.name: signal.unit for signal in (*ECU_HEARD, *INPUTS)}
-
-
-def _bench_reader(message: Any, names: tuple[str, ...]) -> Reads:
-    def read(data: bytes) -> Iterable[tuple[str, float]]:
-        if len(data) != message.length:
-            raise ValueError(f"{message.name} has {len(data)} bytes")
-        return [(name, value) for name, value in zip(names, message.decode(data), strict=True) if value is not None]
-
-    return read
+def _skips(messages: dict[Key, _Message]) -> list[str]:
+    return [
+        f"{message.skipped} frames of {message.reader.message} (0x{identifier:X}) skipped: {message.reason}"
+        for (identifier, _), message in messages.items()
+        if message.skipped
+    ]

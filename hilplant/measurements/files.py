@@ -7,27 +7,26 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hilplant.extras import need
 from hilplant.failure import Failure
+from hilplant.measurements.channels import Channels
 from hilplant.measurements.columns import KNOWN_NAMES, Column, unit_scale
+from hilplant.measurements.frames import FrameSource
 from hilplant.measurements.measurement import Channel
 
-ENDINGS = (".hilrec", ".csv", ".txt", ".parquet", ".mf4", ".mdf", ".blf", ".asc")
-
-Channels = dict[str, Channel]
+LOGS = (".blf", ".asc", ".log", ".trc")
+ENDINGS = (".hilrec", ".csv", ".txt", ".parquet", ".mf4", ".mdf", *LOGS)
 
 
 class Origin(NamedTuple):
     """Where measured channels come from.
 
-    `time` is the column of the time in a table. CAN frames need a `database` (its signals are the columns) or a `bench`
+    `time` is the column of the time in a table. CAN frames need a database (its signals are the columns) or a bench
     (the plant's signals are the columns, through the bench's own mapping).
     """
 
     path: Path
     time: Column | None = None
-    database: Path | None = None
-    bench: str | None = None
+    frames: FrameSource = FrameSource()
 
 
 def read_channels(origin: Origin) -> Channels:
@@ -39,7 +38,7 @@ def read_channels(origin: Origin) -> Channels:
         When the ending is unknown or the file cannot be read; it names file and line where there is one.
 
     """
-    ending = origin.path.suffix.lower()
+    ending = _ending(origin.path)
     if ending not in ENDINGS:
         raise Failure(f"{origin.path}: the ending must be one of {', '.join(ENDINGS)}")
     if origin.path.is_dir():
@@ -53,6 +52,12 @@ def read_channels(origin: Origin) -> Channels:
     if not channels:
         raise Failure(f"{origin.path}: holds no channels")
     return channels
+
+
+def _ending(path: Path) -> str:
+    ending = path.suffix.lower()
+    inner = Path(path.stem).suffix.lower()
+    return inner if ending == ".gz" and inner in LOGS else ending
 
 
 def sha256(path: Path) -> str:
@@ -113,48 +118,23 @@ def _table(origin: Origin, columns: Mapping[str, Any], units: Mapping[str, str],
 
 
 def _on_one_clock(time_s: Any, columns: Mapping[str, Any], units: Mapping[str, str]) -> Channels:
-    return {name: Channel(time_s, values, units.get(name, "")) for name, values in columns.items()}
+    return Channels({name: Channel(time_s, values, units.get(name, "")) for name, values in columns.items()})
 
 
 def _mf4(origin: Origin) -> Channels:
-    need("mdf")
-    import asammdf
+    from hilplant.measurements.can_log import read_can_log
+    from hilplant.measurements.mf4 import read_mf4_channels, read_mf4_frames
 
-    try:
-        with asammdf.MDF(origin.path) as file:
-            source: Any = file
-            if origin.database is not None:
-                source = file.extract_bus_logging(database_files={"CAN": [(str(origin.database), 0)]})
-            return _named([signal for signal in source.iter_channels() if _is_numeric(signal)])
-    except Exception as error:  # asammdf raises errors of every kind for a damaged file
-        if isinstance(error, Failure):
-            raise
-        raise Failure(f"{origin.path}: cannot be read as MDF: {' '.join(str(error).split())}") from error
-
-
-def _named(signals: list[Any]) -> Channels:
-    """Name decoded frames ``Message.Signal``; where a name comes again, in another group, it gets a number."""
-    channels: Channels = {}
-    for signal in signals:
-        shown = [name for name, kind in (signal.display_names or {}).items() if kind == "message"]
-        name = shown[0] if shown else signal.name
-        same = sum(known == name or known.startswith(f"{name}#") for known in channels)
-        channels[f"{name}#{same + 1}" if same else name] = _signal(signal)
-    return channels
-
-
-def _is_numeric(signal: Any) -> bool:
-    return bool(signal.samples.dtype.kind in "biuf" and signal.samples.ndim == 1 and len(signal.samples))
-
-
-def _signal(signal: Any) -> Channel:
-    return Channel(np.asarray(signal.timestamps, np.float64), signal.samples.astype(np.float64), signal.unit or "")
+    if origin.frames == FrameSource():
+        return read_mf4_channels(origin.path)
+    return read_can_log(origin.path, read_mf4_frames(origin.path), origin.frames)
 
 
 def _can_log(origin: Origin) -> Channels:
     from hilplant.measurements.can_log import read_can_log
+    from hilplant.measurements.logged_frames import logged_frames
 
-    return read_can_log(origin.path, origin.database, origin.bench)
+    return read_can_log(origin.path, logged_frames(origin.path, origin.frames), origin.frames)
 
 
 _READERS: dict[str, Callable[[Origin], Channels]] = {
@@ -164,6 +144,5 @@ _READERS: dict[str, Callable[[Origin], Channels]] = {
     ".parquet": _parquet,
     ".mf4": _mf4,
     ".mdf": _mf4,
-    ".blf": _can_log,
-    ".asc": _can_log,
+    **dict.fromkeys(LOGS, _can_log),
 }

@@ -8,6 +8,7 @@ from hilplant.failure import Failure
 from hilplant.measurements.checks import refuse
 from hilplant.measurements.columns import parse_columns
 from hilplant.measurements.files import Origin
+from hilplant.measurements.frames import frame_source
 from hilplant.measurements.measurement import Measurement
 from hilplant.measurements.preparation import Preparation, read_measurement
 from hilplant.signals import SCREENS
@@ -47,8 +48,7 @@ def _read(text: str, columns: str, frames: str | None) -> Named:
             mode = word
         else:
             raise Failure(f"{text}: behind @ may stand {', '.join((*screens, *_MODES))}, not '{word}'")
-    is_database = frames is not None and Path(frames).suffix.lower() not in ("", ".yaml", ".yml")
-    origin = Origin(Path(name), None, Path(str(frames)) if is_database else None, None if is_database else frames)
+    origin = Origin(Path(name), None, frame_source(frames))
     data = read_measurement(origin, parse_columns(columns), Preparation(mode=mode))
     found = refuse(data)
     return Named(text, data, screen, tuple(f"{name}: {note}" for note in (*data.notes, *(each.text for each in found))))

@@ -1,5 +1,7 @@
 """Raw channels -> one measurement, with every change that was made to the data said in a note."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -8,11 +10,11 @@ from hilplant.failure import Failure
 from hilplant.measurements.alignment import current_shift
 from hilplant.measurements.baseline import Correction, corrected
 from hilplant.measurements.columns import Column, choose_columns, has_unit, unit_scale
-from hilplant.measurements.files import Channels, Origin, read_channels, sha256
+from hilplant.measurements.files import Origin, read_channels, sha256
 from hilplant.measurements.measurement import Channel, Mask, Measurement, Native, Samples
 from hilplant.measurements.outliers import near_steps, spikes
 from hilplant.measurements.park import contact
-from hilplant.measurements.resampling import OnClock, checked, on_clock, shared_clock
+from hilplant.measurements.resampling import OnClock, checked, on_clock, own_clock, shared_clock, steadied
 
 #: A shift in time is corrected when it is this many standard errors, and this many samples, away from none: a step of
 #: the voltage may lie anywhere between two samples.
@@ -50,10 +52,12 @@ def read_measurement(
     given = dict(columns or {})
     channels = read_channels(origin._replace(time=given.pop("time", origin.time)))
     made = prepare(channels, given, preparation or Preparation(), str(origin.path))
-    return _stamped(made, sha256(origin.path))
+    return replace(made, sha256=sha256(origin.path), notes=channels.notes + made.notes)
 
 
-def prepare(channels: Channels, columns: dict[str, Column], how: Preparation, source: str = "data") -> Measurement:
+def prepare(
+    channels: Mapping[str, Channel], columns: dict[str, Column], how: Preparation, source: str = "data"
+) -> Measurement:
     """Bring channels onto one clock and into SI units; correct offset and shift, flag outliers, filter."""
     roles = {role: column for role, column in columns.items() if role != "time"}
     chosen = choose_columns(roles, channels, source)
@@ -63,6 +67,8 @@ def prepare(channels: Channels, columns: dict[str, Column], how: Preparation, so
     for role, column in chosen.items():
         place = f"{source}, column '{column.name}'"
         raw[role], native[role] = checked(_in_si(channels[column.name], column, role, place), place)
+    for role in ("voltage", "current"):
+        raw[role] = steadied(raw[role])
     notes = _unit_notes(chosen, channels)
     seen_late_s = _seen_late_s(raw["park"], native["park"], how.step_s)
     raw["park"] = _shifted(raw["park"], how.park_shift_s + seen_late_s)
@@ -86,7 +92,7 @@ def _in_si(channel: Channel, column: Column, role: str, place: str) -> Channel:
     return Channel(channel.time_s, channel.values * scale, unit, channel.held and role != "current")
 
 
-def _unit_notes(chosen: dict[str, Column], channels: Channels) -> tuple[str, ...]:
+def _unit_notes(chosen: dict[str, Column], channels: Mapping[str, Channel]) -> tuple[str, ...]:
     notes = [f"{role} is column '{column.name}'" for role, column in chosen.items()]
     for role, column in chosen.items():
         in_file = channels[column.name].unit
@@ -113,10 +119,7 @@ def _find_shift(
     """Estimate by how much the current is late, on a clock as fine as the data."""
     fine_s = min(step_s, max(native["current"].period_s, native["voltage"].period_s))
     pair = {role: raw[role] for role in ("voltage", "current")}
-    clock = shared_clock(list(pair.values()), fine_s, source)
-    times = raw["voltage"].time_s
-    clock = clock + (times[np.searchsorted(times, clock[0])] - clock[0])  # on the voltage's samples: steps stay steps
-    clock = clock[clock <= min(times[-1], raw["current"].time_s[-1])]
+    clock = own_clock(raw["voltage"], shared_clock(list(pair.values()), fine_s, source))
     hold = raw["voltage"].held
     voltage = on_clock(pair["voltage"], native["voltage"], clock, hold).values
     current = on_clock(pair["current"], native["current"], clock, False).values
@@ -132,7 +135,7 @@ def _find_shift(
 def _assemble(
     raw: dict[str, Channel], native: dict[str, Native], how: Preparation, notes: tuple[str, ...], source: str
 ) -> Measurement:
-    clock = shared_clock(list(raw.values()), how.step_s, source)
+    clock = own_clock(raw["voltage"], shared_clock(list(raw.values()), how.step_s, source))
     on = {role: on_clock(raw[role], native[role], clock, _holds(role, raw[role])) for role in raw}
     voltage = on["voltage"].values * (on["on"].values > 0.5) if "on" in on else on["voltage"].values
     notes += _clock_notes(native, how.step_s)
@@ -142,8 +145,9 @@ def _assemble(
     signals = corrected(voltage, on["current"].values, how.step_s, Correction(how.offset_a, how.filter_hz))
     closed = contact(on["park"].values, how.step_s, how.park_inverted)
     notes += signals.notes + _park_notes(closed.threshold, closed.inverted, closed.bounces, raw["park"])
+    time_s = np.asarray(np.arange(len(clock)) * how.step_s, np.float64)
     return Measurement(
-        clock - clock[0], signals.voltage, signals.current, closed.closed, _fast(on, how.mode, len(clock)),
+        time_s, signals.voltage, signals.current, closed.closed, _fast(on, how.mode, len(clock)),
         present & ~outlier, how.step_s, source, "", tuple(native.items()), notes,
     )  # fmt: skip
 
@@ -189,9 +193,3 @@ def _fast(on: dict[str, OnClock], mode: str | None, count: int) -> Samples:
     if "fast" in on:
         return (on["fast"].values > 0.5).astype(np.float64)
     return np.full(count, np.nan if mode is None else float(mode == "fast"))
-
-
-def _stamped(made: Measurement, digest: str) -> Measurement:
-    from dataclasses import replace
-
-    return replace(made, sha256=digest)

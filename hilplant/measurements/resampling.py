@@ -15,6 +15,12 @@ LONGEST_S = 10_000.0
 FEWEST = 10
 #: A channel this many times faster than the common clock is averaged over each step, not picked from.
 AVERAGE_ABOVE = 1.5
+#: Times are taken as those of equal distances when none is further from them than this part of the distance.
+STEADY_PART, STEADY_SAMPLES = 0.3, 20
+#: A value that comes so little behind a tick counts at it, in parts of the step: logs round, and frames wait.
+HOLD_PART = 0.05
+#: Clocks of instruments run differently by up to this part.
+QUARTZ = 2e-4
 
 
 class OnClock(NamedTuple):
@@ -81,13 +87,50 @@ def shared_clock(channels: list[Channel], step_s: float, source: str) -> Samples
     return np.asarray(start + np.arange(count) * step_s, np.float64)
 
 
+def steadied(channel: Channel) -> Channel:
+    """Return a channel whose samples are of equal distance with equal distances indeed.
+
+    A frame waits for others on the bus, and a log rounds its times (an epoch in floats: to 2.4e-7 s); the sample itself
+    was taken in time. Where all times lie near one straight line over their number, gaps counted, they are taken on it.
+    """
+    times = channel.time_s
+    period_s = float(np.median(np.diff(times))) if len(times) > STEADY_SAMPLES else 0.0
+    if period_s <= 0.0:
+        return channel
+    numbers = np.concatenate([[0.0], np.cumsum(np.round(np.diff(times) / period_s))])
+    if numbers[-1] < STEADY_SAMPLES or np.any(np.diff(numbers) < 1.0):
+        return channel
+    slope, start = np.polyfit(numbers, times, 1)
+    away = times - (start + slope * numbers)
+    if np.max(np.abs(away)) > STEADY_PART * period_s:
+        return channel
+    return Channel(start + slope * numbers, channel.values, channel.unit, channel.held)
+
+
+def own_clock(voltage: Channel, clock: Samples) -> Samples:
+    """Return the clock moved onto the voltage's own samples, so that its steps stay steps.
+
+    A voltage whose period is the clock's but for the error of a quartz gives that too, and no sample is met twice.
+    """
+    step_s, tolerance_s = clock[1] - clock[0], HOLD_PART * (clock[1] - clock[0])
+    times = voltage.time_s
+    first = min(int(np.searchsorted(times, clock[0] - tolerance_s)), len(times) - 1)
+    own_s = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+    if abs(own_s / step_s - 1.0) < QUARTZ:
+        away = (times - times[0]) / own_s
+        if np.max(np.abs(away - np.round(away))) < HOLD_PART:
+            step_s = own_s
+    count = int(np.floor((clock[-1] - times[first]) / step_s + HOLD_PART)) + 1
+    return np.asarray(times[first] + np.arange(count) * step_s, np.float64)
+
+
 def on_clock(channel: Channel, native: Native, clock: Samples, hold: bool) -> OnClock:
     """Bring a channel onto the clock: the last value where it holds, else a straight line or the mean of each step.
 
     The mean is taken over half a step to either side, so that it shifts nothing in time.
     """
     step_s = clock[1] - clock[0]
-    places = np.searchsorted(channel.time_s, clock + 1e-9 * step_s, side="right") - 1
+    places = np.searchsorted(channel.time_s, clock + HOLD_PART * step_s, side="right") - 1
     places = np.clip(places, 0, len(channel.values) - 1)
     if hold:
         values = channel.values[places]

@@ -1,12 +1,12 @@
-"""The frames of a recording as python-can messages, and the logs of other tools, written and read: BLF and ASC."""
+"""The frames of a recording as python-can messages, and the logs of other tools that are written: BLF and ASC."""
 
 from collections.abc import Iterator
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import can
 
-from hilplant.failure import Failure
 from hilplant.recording.reader import Recording
 from hilplant.units import SECOND_NS
 
@@ -35,6 +35,19 @@ def _message(frame: dict[str, Any], timestamp_s: float) -> can.Message:
     )
 
 
+class _AscOfARun(can.ASCWriter):
+    """ASC with the date of the run in its head; python-can writes that of the export, and milliseconds without 0s."""
+
+    def __init__(self, out: Path, start_utc: datetime) -> None:
+        self.run_start: datetime | None = start_utc.astimezone().replace(tzinfo=None)
+        super().__init__(out)
+
+    def _format_header_datetime(self, dt: datetime) -> str:
+        shown = self.run_start or dt
+        self.run_start = None  # the head comes first; the block of frames begins with the first of them
+        return shown.strftime(f"%a %b %d %H:%M:%S.{shown.microsecond // 1000:03d} %Y")
+
+
 def write_frame_log(recording: Recording, out: Path) -> int:
     """Write all frames by the ending of `out`, one of ``ENDINGS``; return how many.
 
@@ -42,25 +55,9 @@ def write_frame_log(recording: Recording, out: Path) -> int:
     exact to a microsecond in both.
     """
     count = 0
-    with can.Logger(out) as log:
+    log = can.Logger(out) if out.suffix.lower() != ".asc" else _AscOfARun(out, recording.run.start_utc)
+    with log:
         for message in messages(recording):
             log.on_message_received(message)
             count += 1
     return count
-
-
-def logged_messages(path: Path) -> Iterator[can.Message]:
-    """Give every frame of a BLF or ASC file in its order.
-
-    Raises
-    ------
-    Failure
-        When the file is not such a log, or breaks off within a frame.
-    """
-    try:
-        with can.LogReader(path) as log:
-            yield from log
-    except OSError as error:
-        raise Failure(f"{path}: cannot be read: {error.strerror or error}") from error
-    except Exception as error:  # the readers of python-can let errors of every kind through
-        raise Failure(f"{path}: cannot be read as a {path.suffix[1:].upper()} log: {error}") from error

@@ -40,7 +40,14 @@ PURE_ECU = {
     for name in ("chart", "conditions", "mermaid", "relay_controller", "sensing", "stalk", "vocabulary")
 }
 #: The only files that open a CAN bus or read and write a CAN log.
-CAN_FILES = {"bus/transport.py", "bus/socketcan.py", "recording/frame_logs.py", "doctor/can_bus.py"}
+CAN_FILES = {
+    "bus/transport.py",
+    "bus/socketcan.py",
+    "recording/blf_log.py",
+    "recording/frame_logs.py",
+    "recording/read_logs.py",
+    "doctor/can_bus.py",
+}
 #: Of the time module. The loop's clock is one file; the others are start-up, other processes and tools.
 CLOCK_FILES = {
     "runtime/clock.py": {"monotonic_ns", "sleep"},

@@ -14,6 +14,7 @@ from hilplant.bench import load_bench
 from hilplant.failure import Failure
 from hilplant.measurements.columns import parse_columns
 from hilplant.measurements.files import Origin, read_channels, sha256
+from hilplant.measurements.frames import FrameSource
 from hilplant.measurements.measurement import Measurement
 from hilplant.measurements.preparation import Preparation, read_measurement
 from hilplant.recording.mf4_frames import append_frames
@@ -98,7 +99,7 @@ def test_a_line_that_is_no_row_of_numbers_is_named(tmp_path: Path) -> None:
 def test_a_file_that_cannot_be_read_is_told(tmp_path: Path, name: str, content: str, message: str) -> None:
     (tmp_path / name).write_text(content)
     with pytest.raises(Failure, match=message):
-        read_channels(Origin(tmp_path / name, bench="virtual"))
+        read_channels(Origin(tmp_path / name, frames=FrameSource(bench="virtual")))
 
 
 def test_a_folder_and_a_file_that_is_not_there_are_told(tmp_path: Path) -> None:
@@ -150,7 +151,7 @@ def test_frames_through_a_database(tmp_path: Path, database: Path, ending: str) 
     path = tmp_path / f"log.{ending}"
     write_frames(path, database)
     columns = parse_columns("voltage=Motor.Volts,current=Amps,park=Switch.Park")
-    made = read_measurement(Origin(path, database=database), columns, EXACT)
+    made = read_measurement(Origin(path, frames=FrameSource(database)), columns, EXACT)
     assert abs(len(made) - COUNT) <= 1
     middle = slice(0, COUNT - 2)
     assert np.percentile(np.abs(made.current_a[middle] - AMPERES[middle]), 99) < 0.011
@@ -166,7 +167,7 @@ def test_frames_without_a_database_and_with_a_wrong_one_are_told(tmp_path: Path,
     other = tmp_path / "other.dbc"
     other.write_text(DBC.replace("256", "300").replace("257", "301"))
     with pytest.raises(Failure, match=r"none of its frames is in .*other\.dbc"):
-        read_channels(Origin(path, database=other))
+        read_channels(Origin(path, frames=FrameSource(other)))
 
 
 def test_frames_through_the_mapping_of_a_bench(tmp_path: Path) -> None:
@@ -185,7 +186,7 @@ def test_frames_through_the_mapping_of_a_bench(tmp_path: Path) -> None:
                 (command, said)
             ]:
                 log(can.Message(TIME_S[tick], message.identifier, message.extended, data=message.encode(row)[0]))
-    made = read_measurement(Origin(path, bench="default"), None, EXACT)
+    made = read_measurement(Origin(path, frames=FrameSource(bench="default")), None, EXACT)
     middle = slice(0, COUNT - 2)
     assert np.allclose(made.current_a[middle], AMPERES[middle], atol=0.011)
     assert np.array_equal(made.fast[middle] > 0.5, (np.arange(COUNT) >= 1500)[middle])
@@ -208,7 +209,7 @@ def test_frames_in_mf4_through_a_database(tmp_path: Path, database: Path) -> Non
     rows = pa.record_batch({"frames": [frames]})
     append_frames(SimpleNamespace(batches=lambda: [rows], run=SimpleNamespace(start_utc=datetime.now(UTC))), path)
     columns = parse_columns("voltage=Motor.Volts,current=Motor.Amps,park=Switch.Park")
-    made = read_measurement(Origin(path, database=database), columns, EXACT)
+    made = read_measurement(Origin(path, frames=FrameSource(database)), columns, EXACT)
     assert np.allclose(made.current_a, AMPERES[: len(made)], atol=0.006)
     assert np.allclose(made.voltage_v, VOLTS[: len(made)], atol=1e-3)
     assert made.park_steps[-1] == 2

@@ -11,6 +11,7 @@ from hilplant.identify.transfer_function import Equivalent
 from hilplant.measurements.checks import examine
 from hilplant.measurements.columns import parse_columns
 from hilplant.measurements.files import Origin
+from hilplant.measurements.frames import frame_source
 from hilplant.measurements.measurement import Measurement
 from hilplant.measurements.park import rising_edges
 from hilplant.measurements.preparation import Preparation, read_measurement
@@ -29,10 +30,8 @@ class Inspection(NamedTuple):
 
 def inspect_data(asked: Inspection) -> tuple[bool, dict[str, Any]]:
     """Print everything about a measurement; return whether it will do, and the figures."""
-    path, frames = asked.path, asked.frames
-    is_database = frames is not None and Path(frames).suffix.lower() not in ("", ".yaml", ".yml")
-    database, bench = (Path(str(frames)), None) if is_database else (None, frames)
-    origin = Origin(path, None, database, bench)
+    path = asked.path
+    origin = Origin(path, None, frame_source(asked.frames))
     data = read_measurement(origin, parse_columns(asked.columns), Preparation(mode=asked.mode))
     findings = examine(data)
     typer.echo(f"{path}: {len(data)} samples, {data.time_s[-1]:.4g} s, {len(rising_edges(data.park))} park edges")

@@ -1,0 +1,13 @@
+"""The channels of a file by their names, and what is to be known of how they were read."""
+
+from collections.abc import Mapping, Sequence
+
+from hilplant.measurements.measurement import Channel
+
+
+class Channels(dict[str, Channel]):
+    """Channels by name; `notes` say what of the file was skipped, cut off or put in order."""
+
+    def __init__(self, channels: Mapping[str, Channel], notes: Sequence[str] = ()) -> None:
+        super().__init__(channels)
+        self.notes = tuple(notes)
