@@ -20,6 +20,7 @@ EXTRAS = {
     "mdf": Extra("MF4 files", ("asammdf",)),
     "plot": Extra("pictures", ("matplotlib",)),
     "recording": Extra("recordings and Parquet files", ("pyarrow",)),
+    "testing": Extra("tests of an ECU", ("jinja2", "matplotlib", "pyarrow")),
     "train": Extra("trained models and their reports", ("matplotlib", "threadpoolctl")),
 }
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -47,3 +49,35 @@ def load_database(path: str | Path) -> Database:
     if not isinstance(database, Database):
         raise DatabaseError(f"{path} holds diagnostics, not messages")
     return database
+
+
+@lru_cache(maxsize=8)
+def parse_database(text: str, ending: str) -> Database:
+    """Read a bus database from its text, as a recording or a loaded bench holds it; `ending` names the format.
+
+    Raises
+    ------
+    DatabaseError
+        When it is none.
+
+    """
+    with without_asammdf():
+        from cantools.database import load_string
+        from cantools.database.can import Database
+    try:
+        database = load_string(text, database_format=ending, strict=False)
+    except Exception as error:  # cantools' parsers let errors of every kind through
+        raise DatabaseError(f"the bus database cannot be read: {' '.join(str(error).split())}") from error
+    if not isinstance(database, Database):
+        raise DatabaseError("the bus database holds diagnostics, not messages")
+    return database
+
+
+def database_among(sources: Mapping[str, str]) -> Database | None:
+    """Return the bus database among the texts of a bench's files, by their names; None where there is none."""
+    logging.getLogger("cantools").setLevel(logging.ERROR)
+    for name, text in sources.items():
+        ending = Path(name).suffix.lower()[1:]
+        if ending in _FORMATS:
+            return parse_database(text, ending)
+    return None

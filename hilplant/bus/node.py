@@ -60,6 +60,9 @@ class Node:
         self._incoming = {(m.identifier, m.extended): Incoming(m) for m in received}
         self._supervised = [i for i in self._incoming.values() if i.message.timeout_ns]
         self._outgoing = [Outgoing(message) for message in sent]
+        self._watched = sorted({index for message in sent for index in message.on_change})
+        self._last_watched: list[float] = []
+        self._due_ns: float = -math.inf
         self._pending: deque[Frame] = deque()
         self._was_up = True
         self._reopen_ns = 0
@@ -87,9 +90,13 @@ class Node:
 
     def send(self, now_ns: int, values: Sequence[float]) -> None:
         """Send each message that is due, or whose watched signals have changed; `values` by codec order."""
-        for outgoing in self._outgoing:
-            if outgoing.is_due(now_ns, values):
-                self._pending.append(self._build(outgoing, values))
+        watched = [values[index] for index in self._watched]
+        if now_ns >= self._due_ns or watched != self._last_watched:  # else none of them is due
+            self._last_watched = watched
+            for outgoing in self._outgoing:
+                if outgoing.is_due(now_ns, values):
+                    self._pending.append(self._build(outgoing, values))
+            self._due_ns = min((each.due_ns for each in self._outgoing if each.message.period_ns), default=math.inf)
         if self._pending:
             self._flush()
 

@@ -72,7 +72,7 @@ class PythonCan:
                 message = self._bus.recv(0)
                 if message is None:
                     break
-                frames.append(_frame(message))
+                frames.append(frame_of(message))
         except Exception:  # drivers raise whatever their libraries raise
             self._up = False
         return frames
@@ -82,7 +82,7 @@ class PythonCan:
         if not self._up:
             return SendResult.DOWN
         try:
-            self._bus.send(_message(frame), timeout=0)
+            self._bus.send(message_of(frame), timeout=0)
         except can.CanError:
             return SendResult.FULL
         except ValueError:
@@ -142,7 +142,8 @@ def _known() -> str:
     return ", ".join(sorted(can.VALID_INTERFACES))
 
 
-def _frame(message: can.Message) -> Frame:
+def frame_of(message: can.Message) -> Frame:
+    """Return a frame of python-can as ours."""
     return Frame(
         message.arbitration_id,
         bytes(message.data),
@@ -154,7 +155,8 @@ def _frame(message: can.Message) -> Frame:
     )
 
 
-def _message(frame: Frame) -> can.Message:
+def message_of(frame: Frame) -> can.Message:
+    """Return a frame as one of python-can."""
     return can.Message(
         arbitration_id=frame.identifier,
         is_extended_id=frame.extended,

@@ -89,6 +89,8 @@ class Loop:
         self.latency = Latency()
         #: Called in each tick in which no command is lost.
         self.control: Control | None = None
+        #: The inputs as last commanded; who commands beside the bus writes here, between ticks.
+        self.commanded = node.values
         self._plant = plant
         self._node = node
         self._clock = clock

@@ -54,7 +54,7 @@ class _End:
 class _Tape:
     """Takes what a ring takes, and keeps it: outputs of each tick, frames by identifier and direction."""
 
-    lost = 0
+    lost = recording = 0
 
     def __init__(self, ticks: int) -> None:
         self._line, self._ticks = np.zeros(ROW_WIDTH), 0

@@ -28,7 +28,7 @@ from hilplant.verdicts.expectations import (
     is_over,
 )
 from hilplant.verdicts.frames import FrameTimes, judge_frames
-from hilplant.verdicts.judgement import NO_WINDOW, Judgement, Piece, combine
+from hilplant.verdicts.judgement import NO_WINDOW, Judgement, Piece, combine, unless_hidden
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -69,7 +69,8 @@ def judge(expectation: Expectation, trace: Trace) -> Judgement:
         return judge_frames(expectation.rule, trace.frames, (first, last), trace.step_s, trace.seen)
     begun, pieces = _pieces(expectation, trace, first, last)
     gaps = [not trace.seen[a : piece.tick + 1].all() for a, piece in zip(begun, pieces, strict=True)]
-    return with_values(combine(pieces, gaps), expectation, trace)
+    hidden = expectation.searches and not trace.seen[first:last].all()
+    return with_values(unless_hidden(combine(pieces, gaps), hidden), expectation, trace)
 
 
 def with_values(judgement: Judgement, expectation: Expectation, trace: Trace) -> Judgement:

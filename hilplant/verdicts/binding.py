@@ -126,7 +126,7 @@ def _edge(entry: w.RisesEntry | w.FallsEntry, known: Known) -> Rule:
 def _settles(entry: w.SettlesEntry, known: Known) -> Rule:
     limits = w.Limits(equals=entry.to, tolerance=entry.tolerance)
     hold = None if entry.hold is None else known.ticks(entry.hold)
-    return Settles(_level(entry.settles, limits, known), _floor(entry.by, known), hold)
+    return Settles(level_of(entry.settles, limits, known), _floor(entry.by, known), hold)
 
 
 def _stays(entry: w.StaysEntry, known: Known) -> Rule:
@@ -162,7 +162,7 @@ def _frames(entry: w.FramesEntry, known: Known) -> Rule:
 def _subject(entry: w.Written, known: Known) -> Condition:
     subject = entry.subject
     if isinstance(subject, str):
-        return (_level(subject, entry.limits, known),)
+        return (level_of(subject, entry.limits, known),)
     return _condition(subject, known)
 
 
@@ -174,7 +174,7 @@ def _part(name: str, part: Any, known: Known) -> Level | Edge:
     if part in ("rises", "falls"):
         return Edge(_name(name, known), part == "rises")
     if not isinstance(part, dict):
-        return _level(name, w.Limits(equals=part), known)
+        return level_of(name, w.Limits(equals=part), known)
     crossing = {"rises", "falls"} & set(part)
     if crossing:
         level = part[crossing.pop()]
@@ -187,10 +187,11 @@ def _part(name: str, part: Any, known: Known) -> Level | Edge:
         raise ValueError(f"{name}: {error.errors()[0]['msg']}") from None
     if not limits.stated:
         raise ValueError(f"{name}: say what of it: below, above, between or equals")
-    return _level(name, limits, known)
+    return level_of(name, limits, known)
 
 
-def _level(name: str, limits: w.Limits, known: Known) -> Level:
+def level_of(name: str, limits: w.Limits, known: Known) -> Level:
+    """Return the level of a signal that obeys limits; ValueError for names that nobody knows."""
     signal = known.signals[_name(name, known)]
     tolerance = limits.tolerance if limits.tolerance is not None else 0.5 if signal.discrete else 0.0
     lowest, highest = _bounds(limits, tolerance, (name, signal))

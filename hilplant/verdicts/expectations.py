@@ -31,7 +31,7 @@ Steps = tuple[int | Condition, ...]
 
 def is_over(until: Steps, tick: int) -> bool:
     """Whether a window that begins at `tick` is over by then: its end is a time that has passed."""
-    return bool(until) and isinstance(until[0], int) and until[0] <= tick
+    return len(until) == 1 and isinstance(until[0], int) and until[0] <= tick
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,6 +139,11 @@ class Expectation:
         if isinstance(rule, Frames):
             return ()
         return rule.trigger if isinstance(rule, Response) else rule.condition
+
+    @property
+    def searches(self) -> bool:
+        """Whether a tick that was lost may hide a trigger, or where a stretch of the window begins."""
+        return isinstance(self.rule, Response) or bool(self.window.during)
 
     @property
     def signals(self) -> tuple[str, ...]:

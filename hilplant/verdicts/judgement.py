@@ -64,3 +64,10 @@ def combine(pieces: Sequence[Piece], lost: Sequence[bool]) -> Judgement:
     if not judged:
         return Judgement("blocked", reason=TOO_SHORT)
     return Judgement("pass", robustness, judged[-1].tick)
+
+
+def unless_hidden(judgement: Judgement, lost: bool) -> Judgement:
+    """Return the verdict where ticks of the window that were `lost` may have hidden what it looks for."""
+    if lost and judgement.ruling in ("pass", "blocked"):
+        return Judgement("inconclusive", judgement.robustness, judgement.tick, LOST)
+    return judgement

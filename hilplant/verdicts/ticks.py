@@ -23,7 +23,7 @@ from hilplant.verdicts.expectations import (
     Steps,
     is_over,
 )
-from hilplant.verdicts.judgement import NO_WINDOW, Judgement, Piece, combine
+from hilplant.verdicts.judgement import NO_WINDOW, Judgement, Piece, combine, unless_hidden
 
 Row = Mapping[str, float]
 
@@ -56,7 +56,8 @@ class LiveExpectation:
         self._open: list[tuple[int, _Stretch]] = []
         self._done: dict[int, Piece] = {}
         self._begun: list[int] = []
-        self._met = self._over = False
+        self._searches = expectation.searches
+        self._met = self._over = self._hidden = False
 
     def take(self, row: Row, seen: bool = True) -> None:
         """Take the next tick; of a tick that was lost, the values of the one before."""
@@ -67,7 +68,9 @@ class LiveExpectation:
             self._first = self._tick
             self._end.begin(self._tick)
             self._over = is_over(self._window.until, self._tick)
-        inside = self._first is not None and not self._closed(row) and self._holds(self._window.during, row)
+        window = self._first is not None and not self._closed(row)
+        self._hidden = self._hidden or (window and not seen and self._searches)
+        inside = window and self._holds(self._window.during, row)
         self._advance(inside, row)
         self._before = row
 
@@ -91,7 +94,7 @@ class LiveExpectation:
             return Judgement("blocked", reason=NO_WINDOW)
         pieces = [(first, self._done[first]) for first in self._begun if first in self._done]
         gaps = [any(first <= lost <= piece.tick for lost in self._lost_ticks) for first, piece in pieces]
-        return combine([piece for _, piece in pieces], gaps)
+        return unless_hidden(combine([piece for _, piece in pieces], gaps), self._hidden)
 
     def _closed(self, row: Row) -> bool:
         return self._over or (bool(self._window.until) and self._end.reached(self._tick, row, self._before))

@@ -71,9 +71,12 @@ class Written(Checked):
         return _limits_of(self)
 
     def text(self) -> str:
-        """Return it as one line of YAML."""
+        """Return it as one line of YAML: the kind first, the window last."""
         written = self.model_dump(by_alias=True, exclude_unset=True, exclude={"title"})
-        return ", ".join(f"{key}: {_flow(value)}" for key, value in written.items())
+        order = ["within", self.key, *written] if "signal" in written else [self.key, *written]
+        window = [key for key in ("after", "until", "while") if key in written]
+        keys = dict.fromkeys([*(key for key in order if key in written and key not in window), *window])
+        return ", ".join(f"{key}: {_flow(written[key])}" for key in keys)
 
 
 class _Limited(Written):

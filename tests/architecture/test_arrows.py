@@ -47,6 +47,7 @@ CAN_FILES = {
     "recording/frame_logs.py",
     "recording/read_logs.py",
     "doctor/can_bus.py",
+    "testing/virtual_can.py",
 }
 #: Of the time module. The loop's clock is one file; the others are start-up, other processes and tools.
 CLOCK_FILES = {

@@ -14,7 +14,7 @@ STATUSES = {"measured", "identified", "published", "assumed"}
 #: Folders of config/ whose files are parameter sets.
 PARAMETER_SETS = ("motors", "linkages", "screens", "measurements")
 #: Folders of config/ whose files say what to do, not what a thing is like.
-DESCRIPTIONS = ("benches", "scenarios")
+DESCRIPTIONS = ("benches", "scenarios", "tests")
 #: Folder of config/ whose files a command has written, each with a seal.
 TRAINED = "surrogates"
 

@@ -1,0 +1,58 @@
+"""`hilplant test`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hilplant.atomic_write import claim
+from hilplant.cli.groups import command_app
+from hilplant.cli.options import JsonFile, write_json
+from hilplant.extras import need
+from hilplant.failure import Failure
+
+app = command_app()
+
+JUnitFile = Annotated[Path | None, typer.Option("--junit", help="write the verdicts to this file as JUnit XML")]
+HtmlFile = Annotated[Path | None, typer.Option("--html", help="write a report to this file, one page of HTML")]
+
+
+@app.command(epilog="Example: hilplant test my_tests/ --bench my_car.yaml --junit report.xml --html report.html")
+def test(  # noqa: PLR0913, PLR0917
+    scenarios: Annotated[
+        list[str] | None, typer.Argument(help="scenario files, folders of them, or names of shipped tests")
+    ] = None,
+    bench: Annotated[str | None, typer.Option(help="bench for all; else the scenario's own, else the default")] = None,
+    on: Annotated[str, typer.Option(help="virtual: in virtual time, without a CAN interface")] = "virtual",
+    ecu: Annotated[str, typer.Option(help="stand-in; external: none joins here")] = "stand-in",
+    junit: JUnitFile = None,
+    html: HtmlFile = None,
+    json_file: JsonFile = None,
+) -> None:
+    """Run scenarios as tests, and judge what they expect.
+
+    Plant and stand-in ECU meet on an in-memory bus in virtual time. Without a scenario it is the shipped suite.
+    Exit code 0 when all pass; 1 when one fails, was blocked or stayed inconclusive.
+    """
+    need("testing")
+    from hilplant.testing.junit import write_junit
+    from hilplant.testing.report import write_report
+    from hilplant.testing.suite import figures_of, run_tests, scenario_files, summary_of
+    from hilplant.testing.words import lines_of
+
+    if on != "virtual":
+        raise Failure(f"--on {on}: tests run in virtual time; record a run on {on}, then: hilplant judge FILE SCENARIO")
+    if ecu not in ("stand-in", "external"):
+        raise Failure(f"--ecu must be stand-in or external, not {ecu}")
+    for file in (junit, html, json_file):
+        claim(file)
+    tests = run_tests(
+        scenario_files(scenarios or []), bench, ecu == "stand-in", lambda done: typer.echo("\n".join(lines_of(done)))
+    )
+    typer.echo(summary_of(tests))
+    if junit is not None:
+        write_junit(junit, tests)
+    if html is not None:
+        write_report(html, tests)
+    write_json(json_file, figures_of(tests))
+    raise typer.Exit(0 if all(done.ruling == "pass" for done in tests) else 1)

@@ -1,0 +1,154 @@
+"""What a run left, in virtual time or in a recording, as the arrays on which expectations are judged."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hilplant.bus.frame import Frame
+from hilplant.bus.protection import Checker, Protection, Verdict
+from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, STATUS_COLUMNS
+from hilplant.recording.reader import Recording, matrix
+from hilplant.runtime.loop import STOPPED
+from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS, STATUS_INDEX
+from hilplant.testing.known_signals import DatabaseSignals
+from hilplant.units import SECOND_NS
+from hilplant.verdicts.arrays import Trace
+from hilplant.verdicts.expectations import Expectation, Frames
+from hilplant.verdicts.frames import FrameTimes
+
+Floats = NDArray[np.float64]
+
+_FIRST_OUTPUT = 2 + len(INPUTS)
+_FIRST_STATUS = _FIRST_OUTPUT + len(OUTPUTS)
+_MODE = _FIRST_STATUS + STATUS_INDEX["mode"]
+#: Counts whose rise says that time or data were lost in that tick.
+_LOSSES = [_FIRST_STATUS + STATUS_INDEX[name] for name in ("overruns", "missed_frame", "ring_lost", "queue_full")]
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Rows as the loop writes them (tick, deadline, inputs, outputs, status), and every frame with its tick."""
+
+    step_ns: int
+    rows: Floats
+    frame_ticks: NDArray[np.int64]
+    frames: Sequence[Frame]
+
+    def trace(self, expectations: Iterable[Expectation], database: DatabaseSignals, ticks: int) -> Trace:
+        """Return what these expectations look at, in the first `ticks` periods; the server's last tick is left out."""
+        wanted = list(expectations)
+        rows = self.rows[self.rows[:, _MODE] != STOPPED]
+        places = (rows[:, 1] / self.step_ns).round().astype(np.int64)
+        rows, places = rows[places < ticks], places[places < ticks]
+        count = int(places[-1]) + 1 if len(places) else 0
+        seen = np.zeros(count, np.bool_)
+        seen[places] = True
+        lost = np.diff(rows[:, _LOSSES], axis=0, prepend=0.0).any(axis=1)
+        seen[places[lost]] = False
+        names = dict.fromkeys(name for each in wanted for name in each.signals)
+        signals = {name: self._signal(name, rows, places, count, database) for name in names}
+        messages = {each.rule.message for each in wanted if isinstance(each.rule, Frames)}
+        frames = {name: self._frame_times(database, name, count) for name in messages}
+        return Trace(self.step_ns / SECOND_NS, signals, seen, frames)
+
+    def signal(self, name: str, database: DatabaseSignals) -> Floats:
+        """Return one signal over all rows."""
+        places = (self.rows[:, 1] / self.step_ns).round().astype(np.int64)
+        count = int(places[-1]) + 1 if len(places) else 0
+        return self._signal(name, self.rows, places, count, database)
+
+    def _signal(
+        self, name: str, rows: Floats, places: NDArray[np.int64], count: int, database: DatabaseSignals
+    ) -> Floats:
+        column = column_of(name)
+        values = np.full(count, np.nan)
+        if column is not None:
+            values[places] = rows[:, column]
+            return _held(values, places)
+        message, signal = database.signals[name]
+        ticks, decoded = self._decoded(message, signal.name)
+        within = ticks < count
+        values[ticks[within]] = decoded[within]  # of several in a tick the last one stays
+        return _held(values, np.unique(ticks[within]))
+
+    def _decoded(self, message: Any, signal: str) -> tuple[NDArray[np.int64], Floats]:
+        places = self._places(message)
+        found = [(place, _value(message, self.frames[place].data, signal)) for place in places]
+        kept = [(place, value) for place, value in found if value is not None]
+        ticks = self.frame_ticks[[place for place, _ in kept]] if kept else np.zeros(0, np.int64)
+        return ticks, np.array([value for _, value in kept], np.float64)
+
+    def _places(self, message: Any) -> list[int]:
+        wanted = (message.frame_id, message.is_extended_frame)
+        return [
+            place
+            for place, frame in enumerate(self.frames)
+            if (frame.identifier, frame.extended) == wanted and not (frame.remote or frame.error)
+        ]
+
+    def _frame_times(self, database: DatabaseSignals, name: str, count: int) -> FrameTimes:
+        message, protection = database.messages[name], database.protections.get(name)
+        places = [place for place in self._places(message) if self.frame_ticks[place] < count]
+        counter, crc = _checked(protection, [self.frames[place].data for place in places])
+        ticks = self.frame_ticks[places] if places else np.zeros(0, np.int64)
+        return FrameTimes(ticks, float(message.cycle_time or 0.0), counter, crc)
+
+
+def column_of(name: str) -> int | None:
+    """Return the place of a plant's signal in a row: outputs first, then status, then inputs; None for another's."""
+    if name in OUTPUT_INDEX:
+        return _FIRST_OUTPUT + OUTPUT_INDEX[name]
+    if name in STATUS_INDEX:
+        return _FIRST_STATUS + STATUS_INDEX[name]
+    return 2 + INPUT_INDEX[name] if name in INPUT_INDEX else None
+
+
+def recorded(recording: Recording) -> Evidence:
+    """Return what a recording holds."""
+    rows, ticks, frames = [], [], []
+    step_ns = recording.run.step_ns
+    for batch in recording.batches():
+        values = matrix(batch, ("tick", "deadline_ns", *INPUT_COLUMNS, *OUTPUT_COLUMNS, *STATUS_COLUMNS))
+        rows.append(values[~np.isnan(values[:, 1])])
+        for frame in batch.column("frames").flatten().to_pylist():
+            ticks.append(round(frame["time_ns"] / step_ns))
+            flags = [frame[flag] for flag in ("extended", "fd", "bitrate_switch", "remote", "error")]
+            frames.append(Frame(frame["identifier"], frame["data"], *flags))
+    return Evidence(step_ns, np.concatenate(rows), np.array(ticks, np.int64), frames)
+
+
+def _held(values: Floats, places: NDArray[np.int64]) -> Floats:
+    """Fill every tick that has no value with that of the tick before; nan before the first."""
+    if not len(places):
+        return values
+    source = np.full(len(values), -1, np.int64)
+    source[places] = places
+    source = np.maximum.accumulate(source)
+    return np.where(source >= 0, values[source], np.nan)
+
+
+def _value(message: Any, data: bytes, signal: str) -> float | None:
+    """Decode one signal; None where the frame is too short, or its page is another."""
+    if len(data) < message.length:
+        return None
+    value = message.decode(data, decode_choices=False).get(signal)
+    return None if value is None else float(value)
+
+
+def _checked(protection: Protection | None, payloads: Sequence[bytes]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Say of each frame whether its counter and its checksum are right; one counter that jumps counts once."""
+    counter, crc = [], []
+    checker = Checker(protection) if protection is not None else None
+    for data in payloads if checker is not None else ():
+        found = checker.check(data)  # type: ignore[union-attr]
+        counter.append(found is not Verdict.WRONG_COUNTER)
+        crc.append(found is not Verdict.WRONG_CRC)
+        if found is Verdict.WRONG_COUNTER:
+            checker.reset()  # type: ignore[union-attr]
+            found = checker.check(data)  # type: ignore[union-attr]
+        if found is Verdict.OK:
+            checker.accept()  # type: ignore[union-attr]
+    return np.array(counter, np.bool_), np.array(crc, np.bool_)

@@ -1,0 +1,175 @@
+"""The plugin for pytest: fixtures for a plant in virtual time, scenario files as tests, evidence of what failed.
+
+Options: `--hilplant-bench`, `--hilplant-clock`, `--hilplant-channel`, `--hilplant-failures`.
+"""
+
+import re
+from collections.abc import Generator, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from hilplant.bench import Bench
+    from hilplant.testing.scenario_test import ScenarioTest
+    from hilplant.testing.suite import Benches
+    from hilplant.testing.wiper import Wiper
+
+_WIPER: "pytest.StashKey[Wiper]" = pytest.StashKey()
+_SCENARIO_FILE = re.compile(r"test_.*\.hil\.ya?ml")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the options."""
+    group = parser.getgroup("hilplant", "wipers in a loop with an ECU")
+    group.addoption("--hilplant-bench", default=None, metavar="BENCH", help="bench file or name  [default: default]")
+    group.addoption(
+        "--hilplant-clock", default="virtual", choices=["virtual", "wall"], help="plant seconds, or those of the wall"
+    )
+    group.addoption("--hilplant-channel", default=None, metavar="CHANNEL", help="CAN channel, with the wall clock")
+    group.addoption(
+        "--hilplant-failures", default="hilplant-failures", metavar="DIR", help="where recordings of failed tests go"
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Refuse options that do not fit each other."""
+    if config.getoption("--hilplant-clock") == "wall":
+        raise pytest.UsageError(
+            "--hilplant-clock wall: tests run in virtual time; on an interface run `hilplant run BENCH --record FILE`, "
+            "and judge the recording with `hilplant judge FILE SCENARIO`"
+        )
+    if config.getoption("--hilplant-channel") is not None:
+        raise pytest.UsageError("--hilplant-channel needs --hilplant-clock wall")
+
+
+@pytest.fixture(scope="session")
+def hilplant_bench(request: pytest.FixtureRequest) -> "Bench":
+    """The bench of `--hilplant-bench`, loaded once."""
+    return _bench(request.config)
+
+
+@pytest.fixture
+def wiper(request: pytest.FixtureRequest, hilplant_bench: "Bench") -> Iterator["Wiper"]:
+    """A plant in virtual time; the test is the ECU."""
+    yield from _given(request, hilplant_bench, stand_in=False)
+
+
+@pytest.fixture
+def car(request: pytest.FixtureRequest, hilplant_bench: "Bench") -> Iterator["Wiper"]:
+    """A plant with the stand-in ECU before it, in virtual time; the test is the driver."""
+    yield from _given(request, hilplant_bench, stand_in=True)
+
+
+def _given(request: pytest.FixtureRequest, bench: "Bench", stand_in: bool) -> Iterator["Wiper"]:
+    from hilplant.testing.wiper import Wiper
+
+    made = Wiper(bench, stand_in)
+    request.node.stash[_WIPER] = made
+    yield made
+    if made.has_bus:
+        made.bus.shutdown()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
+    """Judge what a test expected, when it has ended well."""
+    result = yield
+    made = item.stash.get(_WIPER, None)
+    broken = made.judge() if made is not None else []
+    if broken:
+        pytest.fail("\n".join(broken), pytrace=False)
+    return result
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, Any]:
+    """Keep recording and plot of a test that failed, and say how to replay it."""
+    report = yield
+    if report.when == "call" and report.failed:
+        if item.stash.get(_WIPER, None) is not None:
+            report.sections.append(("hilplant", _keep(item, item.stash[_WIPER].record)))
+        elif isinstance(item, ScenarioItem) and item.done is not None:
+            kept = _keep(item, item.done.record)
+            report.sections.append(("hilplant", f"{kept}\nagain: {item.done.rerun}"))
+    return report
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "ScenarioFile | None":
+    """Collect `test_*.hil.yaml`: scenarios with an `expect` section."""
+    if _SCENARIO_FILE.fullmatch(file_path.name):
+        return ScenarioFile.from_parent(parent, path=file_path)
+    return None
+
+
+class ScenarioFile(pytest.File):
+    """A scenario file: one test."""
+
+    def collect(self) -> Iterator["ScenarioItem"]:
+        """Give the test."""
+        yield ScenarioItem.from_parent(self, name=self.path.name.split(".")[0])
+
+
+class ScenarioFailedError(Exception):
+    """What did not hold, in lines."""
+
+
+class ScenarioItem(pytest.Item):
+    """A scenario as a test: passes when all that it expects holds."""
+
+    done: "ScenarioTest | None" = None
+
+    def runtest(self) -> None:
+        """Run it with the stand-in ECU, and judge it."""
+        from hilplant.simulation.scenario import load_scenario
+        from hilplant.testing.scenario_test import run_virtually
+        from hilplant.testing.words import lines_of
+
+        scenario = load_scenario(self.path)
+        self.done = run_virtually(
+            scenario, _bench(self.config, scenario.bench), bench_name=self.config.getoption("--hilplant-bench")
+        )
+        if self.done.ruling != "pass":
+            raise ScenarioFailedError("\n".join(lines_of(self.done)))
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+        """Show what did not hold, and mistakes of the file, without a traceback."""
+        from hilplant.failure import Failure
+
+        if isinstance(excinfo.value, ScenarioFailedError | Failure):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Say where the test is."""
+        return self.path, 0, self.name
+
+
+def _bench(config: pytest.Config, otherwise: str | None = None) -> "Bench":
+    from hilplant.extras import need
+    from hilplant.testing.suite import DEFAULT_BENCH, Benches
+
+    need("testing")
+    kept = config.stash.setdefault(_BENCHES, Benches())
+    return kept.named(config.getoption("--hilplant-bench") or otherwise or DEFAULT_BENCH)
+
+
+_BENCHES: "pytest.StashKey[Benches]" = pytest.StashKey()
+
+
+def _keep(item: pytest.Item, record: Any) -> str:
+    """Write recording and plot into a folder named after the test."""
+    from hilplant.atomic_write import make_folder
+    from hilplant.failure import Failure
+    from hilplant.plots.recording import plot_recording
+
+    name = re.sub(r"[^A-Za-z0-9_.-]+", "_", item.nodeid).strip("_")
+    folder = Path(item.config.rootpath) / item.config.getoption("--hilplant-failures") / name
+    recording, plot = folder / "run.hilrec", folder / "run.png"
+    try:
+        record(make_folder(folder) / recording.name)
+        plot_recording(recording, plot)
+    except (Failure, OSError) as error:  # what the test says is worth more
+        return f"nothing is kept of this run: {error}"
+    return f"recording: {recording}\nplot: {plot}\nreplay: hilplant replay {recording}"

@@ -1,0 +1,100 @@
+"""Several scenarios as tests, and the files that tell what came of them."""
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hilplant import resources
+from hilplant.bench import Bench, load_bench
+from hilplant.failure import Failure
+from hilplant.simulation.scenario import Scenario, load_scenario
+from hilplant.testing.scenario_test import RULINGS, ScenarioTest, run_virtually
+
+DEFAULT_BENCH = "default"
+
+
+@dataclass
+class Benches:
+    """Benches that were loaded, by name: many scenarios share one."""
+
+    loaded: dict[str, Bench] = field(default_factory=dict)
+
+    def named(self, name: str) -> Bench:
+        """Return a bench, loaded once."""
+        if name not in self.loaded:
+            self.loaded[name] = load_bench(name)
+        return self.loaded[name]
+
+
+def scenario_files(names: Sequence[str]) -> list[Path]:
+    """Return the files that are named: files, folders of them, or shipped tests; without a name the shipped suite."""
+    found: list[Path] = []
+    for name in names or [str(resources.shipped("config", "tests"))]:
+        if Path(name).is_dir():
+            inside = sorted(Path(name).glob("*.yaml"))
+            if not inside:
+                raise Failure(f"{name}: no .yaml file in this folder")
+            found += inside
+        else:
+            found.append(resources.named("tests", name))
+    return found
+
+
+def run_tests(
+    paths: Iterable[Path], bench_name: str | None, stand_in: bool, tell: Callable[[ScenarioTest], None]
+) -> list[ScenarioTest]:
+    """Run scenarios one after the other, all read before the first runs; `tell` hears of each when it is judged."""
+    benches = Benches()
+    scenarios: list[Scenario] = [load_scenario(path) for path in paths]
+    for scenario in scenarios:
+        if not scenario.expect:
+            raise Failure(f"{scenario.path}: expects nothing, so that it tests nothing; give it an `expect` section")
+    done = []
+    for scenario in scenarios:
+        bench = benches.named(bench_name or scenario.bench or DEFAULT_BENCH)
+        done.append(run_virtually(scenario, bench, stand_in, bench_name))
+        tell(done[-1])
+    return done
+
+
+def figures_of(tests: Sequence[ScenarioTest]) -> dict[str, Any]:
+    """Return counts, and each test with its expectations."""
+    count = Counter(test.ruling for test in tests)
+    return (
+        {"tests": len(tests)} | {ruling: count[ruling] for ruling in RULINGS} | {"results": [_told(t) for t in tests]}
+    )
+
+
+def _told(test: ScenarioTest) -> dict[str, Any]:
+    expectations = [
+        {
+            "place": each.expectation.place,
+            "text": each.expectation.text,
+            "ruling": each.judgement.ruling,
+            "robustness": each.judgement.robustness if math.isfinite(each.judgement.robustness) else None,
+            "unit": each.expectation.unit,
+            "time_s": None if each.judgement.tick is None else each.judgement.tick * test.step_s,
+            "reason": each.judgement.reason,
+            "values": each.judgement.values,
+        }
+        for each in test.judged
+    ]
+    return {
+        "name": test.name,
+        "file": str(test.scenario.path),
+        "requirement": test.scenario.requirement,
+        "bench": test.bench_name,
+        "ruling": test.ruling,
+        "rerun": test.rerun,
+        "expectations": expectations,
+    }
+
+
+def summary_of(tests: Sequence[ScenarioTest]) -> str:
+    """Return one line: how many tests, and how many of each ruling."""
+    count = Counter(test.ruling for test in tests)
+    told = ", ".join(f"{count[ruling]} {ruling}" for ruling in reversed(RULINGS) if count[ruling])
+    return f"{len(tests)} tests: {told}"

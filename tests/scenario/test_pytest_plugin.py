@@ -1,0 +1,139 @@
+"""The plugin as a user of pytest meets it: in a folder of its own, with tests that pass and tests that fail."""
+
+import time
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+
+from hilplant import jit
+from hilplant.recording.replay import replay
+
+pytest_plugins = ["pytester"]
+
+COMPILED = Path(jit.numba.config.CACHE_DIR)
+INSTALLED = any(entry.value == "hilplant.testing.plugin" for entry in entry_points(group="pytest11"))
+PLUGIN = () if INSTALLED else ("-p", "hilplant.testing.plugin")
+
+PARKS = """
+    def test_parks(wiper):
+        wiper.send("RelayCommand", RelayOn=1)
+        wiper.wait("ParkContact", 0, within=1.0)
+        wiper.wait("ParkContact", 1, within=3.0)
+        wiper.send("RelayCommand", RelayOn=0)
+        wiper.run(1.0)
+        assert wiper["ParkContact"] == 1 and abs(wiper["crank_angle_deg"]) < 7
+"""
+SCENARIO = """
+seconds: 4
+stalk: [[1, slow]]
+expect:
+  - {rises: relay_on, after: 1.0, within: 0.05}
+  - {always: current_a, below: LIMIT}
+"""
+
+
+@pytest.fixture(autouse=True)
+def compiled_already(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The tester has a home of its own, and so would have no compiled code."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(COMPILED.parent))
+
+
+def run(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
+    return pytester.runpytest_subprocess(*PLUGIN, "-p", "no:cacheprovider", *arguments)
+
+
+def test_ten_lines_drive_the_plant_in_plant_seconds(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(PARKS)
+    run(pytester).assert_outcomes(passed=1)
+
+
+def test_a_stand_in_ecu_is_driven_by_the_stalk_message(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(
+        """
+        def test_flick(car):
+            car.expect.count({"park_contact": "rises"}, equals=1)
+            car.run(1.0)
+            car.send("StalkCommand", Flick_Wipe="Pressed")
+            car.run(0.3)
+            car.send("StalkCommand", Flick_Wipe=False)
+            car.wait("ParkContact", "Open", within=1.0)
+            took = car.wait("ParkContact", "Closed", within=3.0)
+            assert 0.5 < took < 2.0
+            car.run(1.0)
+        """
+    )
+    run(pytester).assert_outcomes(passed=1)
+
+
+def test_what_fails_leaves_line_plot_and_a_recording_that_replays(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(
+        test_inrush="""
+        def test_inrush(wiper):
+            wiper.expect.always("current_a", below=5.0)
+            wiper.send("RelayCommand", RelayOn=True)
+            wiper.run(1.0)
+        """
+    )
+    result = run(pytester)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*test_inrush.py:2: fail: always: current_a, below: 5*A beyond the limit"])
+    folder = pytester.path / "hilplant-failures" / "test_inrush.py_test_inrush"
+    assert (folder / "run.png").stat().st_size > 10_000
+    assert replay(folder / "run.hilrec").equal
+    result.stdout.fnmatch_lines([f"replay: hilplant replay {folder / 'run.hilrec'}"])
+
+
+def test_waiting_has_a_limit_and_says_what_there_is(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(
+        """
+        def test_never(wiper):
+            wiper.wait("ParkContact", 0, within=0.5)
+
+        def test_typing_error(wiper):
+            wiper.wait("ParkContakt", 0)
+        """
+    )
+    result = run(pytester)
+    result.assert_outcomes(failed=2)
+    result.stdout.fnmatch_lines(["*ParkContact equals 0: not within 0.5 s; it is 1 at 0.500 s"])
+    result.stdout.fnmatch_lines(["*no signal 'ParkContakt', did you mean 'ParkContact'?"])
+
+
+def test_python_can_beside_it_obeys_virtual_time(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(
+        """
+        import can
+
+        def test_can(wiper):
+            on = can.Message(arbitration_id=0x120, data=[1, 0], is_extended_id=False)
+            task = wiper.bus.send_periodic(on, 0.05)
+            seen = [wiper.bus.recv(1.0) for _ in range(20000)]
+            times = [message.timestamp for message in seen if message.arbitration_id == 0x200]
+            gaps = [later - sooner for sooner, later in zip(times, times[1:])]
+            assert 0.0099 < max(gaps) < 0.0101 and times[-1] > 20.0
+            assert wiper["relay_on"] == 1
+            task.stop()
+            wiper.run(0.6)
+            assert wiper["relay_on"] == 0 and wiper["timeout"] == 1
+            wiper.bus.set_filters([{"can_id": 0x123, "can_mask": 0x7FF}])
+            before = wiper.time_s
+            assert wiper.bus.recv(2.5) is None
+            assert abs(wiper.time_s - before - 2.5) < 0.002
+        """
+    )
+    begin_s = time.process_time()
+    run(pytester).assert_outcomes(passed=1)
+    assert time.process_time() - begin_s < 20.0
+
+
+@pytest.mark.parametrize("workers", [(), ("-n", "2", "-p", "xdist")], ids=["alone", "xdist"])
+def test_scenario_files_are_tests(pytester: pytest.Pytester, workers: tuple[str, ...]) -> None:
+    for name, limit in (("good", "25"), ("bad", "5")):
+        Path(pytester.path, f"test_{name}.hil.yaml").write_text(SCENARIO.replace("LIMIT", limit))
+    Path(pytester.path, "test_mistake.hil.yaml").write_text("seconds: 1\nexpect:\n  - {always: curent_a, below: 1}\n")
+    result = run(pytester, *workers)
+    result.assert_outcomes(passed=1, failed=2)
+    result.stdout.fnmatch_lines(["*test_bad.hil.yaml:6: fail: always: current_a, below: 5: at *beyond the limit"])
+    result.stdout.fnmatch_lines(["*test_mistake.hil.yaml:3: no signal 'curent_a', did you mean 'current_a'?*"])
+    assert replay(pytester.path / "hilplant-failures" / "test_bad.hil.yaml_test_bad" / "run.hilrec").equal
