@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.failure import Failure
+from hilplant.measurements.cells import unit_of
 from hilplant.measurements.measurement import Channel
 
 #: What a column may be, with the unit it is brought to.
@@ -14,7 +15,10 @@ REQUIRED = ("voltage", "current", "park")
 
 #: Columns that are found without being named: those of this project's own tables, and plain words.
 KNOWN_NAMES = {
-    "time": ("time_s", "time", "t", "timestamps"),
+    "time": (
+        *("time_s", "time", "t", "timestamps", "timestamp", "x_value", "x-axis", "zeit", "datetime", "date/time"),
+        *("uhrzeit", "datum", "date"),
+    ),
     "voltage": ("terminal_v", "voltage_v", "voltage", "terminalvoltage"),
     "current": ("current_a", "current", "motorcurrent"),
     "park": ("park_contact", "park", "parkcontact", "ps"),
@@ -22,11 +26,12 @@ KNOWN_NAMES = {
 }
 
 _SCALES = {
-    "s": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0},
+    "s": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "d": 86400.0},
     "V": {"V": 1.0, "mV": 1e-3, "kV": 1e3, "uV": 1e-6, "µV": 1e-6},
     "A": {"A": 1.0, "mA": 1e-3, "kA": 1e3, "uA": 1e-6, "µA": 1e-6},
 }
 _ENTRY = re.compile(r"(?P<name>[^\[\]*]+?)\s*(\[(?P<unit>[^\]]*)\])?\s*(\*\s*(?P<factor>\S+))?")
+_CLOCK = re.compile(r"(?P<start>[-+]?\d*\.?\d*(?:[eE][-+]?\d+)?):(?P<step>\d*\.?\d+(?:[eE][-+]?\d+)?)")
 
 
 class Column(NamedTuple):
@@ -75,11 +80,21 @@ def _column(place: str, role: str, written: str) -> Column:
     return column
 
 
+def clock_of(column: Column | None) -> tuple[float, float] | None:
+    """Return start and distance of the samples [s] where time=START:STEP says them in place of a column."""
+    found = _CLOCK.fullmatch(column.name) if column is not None else None
+    if found is None or column is None:
+        return None
+    scale = unit_scale("--columns, time", "time", column.unit or "") * column.factor
+    return scale * float(found["start"] or 0.0), scale * float(found["step"])
+
+
 def unit_scale(place: str, role: str, unit: str) -> float:
     """Return what a value in `unit` is multiplied with to be in the role's own unit; no unit is that one."""
     own = ROLES[role]
     if not own or not unit:
         return 1.0
+    unit = unit_of(unit)
     if unit not in _SCALES[own]:
         known = ", ".join(_SCALES[own])
         raise Failure(f"{place}: {role} comes in one of {known}, not in '{unit}'; say it as {role}=NAME[{own}]")
@@ -88,7 +103,7 @@ def unit_scale(place: str, role: str, unit: str) -> float:
 
 def has_unit(role: str, unit: str) -> bool:
     """Say whether a unit is one of those that the role comes in."""
-    return unit in _SCALES.get(ROLES[role], {})
+    return unit_of(unit) in _SCALES.get(ROLES[role], {})
 
 
 def choose_columns(given: Mapping[str, Column], names: Mapping[str, Channel], source: str) -> dict[str, Column]:

@@ -1,7 +1,7 @@
-"""A CSV file as instruments write it: three separators, decimal commas, lines before the header, a line of units."""
+"""A CSV file as instruments and spreadsheets write it: any usual encoding, separator, decimal sign and header."""
 
+import io
 import re
-from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,32 +10,32 @@ import pyarrow as pa
 from pyarrow import csv
 
 from hilplant.failure import Failure
+from hilplant.measurements.cells import moment_of, number_of
+from hilplant.measurements.csv_layout import Layout, layout_of
 from hilplant.measurements.measurement import Samples
 
-#: Lines in which header, separator and decimal sign are looked for.
-_HEAD_LINES = 5000
-_UNIT = re.compile(r"[\[(]\s*(?P<unit>[^\])]*?)\s*[\])]\s*$")
+#: Lines in which header, separator and decimal sign are looked for, and characters of one line that are looked at.
+_HEAD_LINES, _LONGEST_LINE = 5000, 20_000
 _ROW = re.compile(r"Row #(\d+)")
-
-
-class _Layout(NamedTuple):
-    separator: str
-    decimal: str
-    first_row: int  # line index of the first row of numbers
-    names: tuple[str, ...]
-    units: tuple[str, ...]
+_COLUMN = re.compile(r"CSV column #(\d+)")
 
 
 class Table(NamedTuple):
-    """Columns by name, their units as written ("" for none), and the line number of the first row of numbers."""
+    """Columns by name, their units as written ("" for none), and the line number of the first row of numbers.
+
+    `clock` is start and distance of the samples [s] where the head says them.
+    """
 
     columns: dict[str, Samples]
     units: dict[str, str]
     first_line: int
+    clock: tuple[float, float] | None = None
 
 
 def read_csv(path: Path) -> Table:
-    """Read the numbers of a CSV file; an empty cell is NaN.
+    """Read the numbers of a CSV file; an empty cell is NaN, dates are seconds, yes and no are 1 and 0.
+
+    Columns of text are left out.
 
     Raises
     ------
@@ -43,76 +43,91 @@ def read_csv(path: Path) -> Table:
         Naming the line that is wrong.
 
     """
-    with open(path, encoding="utf-8-sig", errors="replace") as file:
-        head = [line.rstrip("\r\n") for _, line in zip(range(_HEAD_LINES), file, strict=False)]
+    text = _decoded(path.read_bytes())
+    head = [line[:_LONGEST_LINE].rstrip("\r\n") for _, line in zip(range(_HEAD_LINES), io.StringIO(text), strict=False)]
     if not any(head):
         raise Failure(f"{path}: is empty")
-    layout = _layout(head)
+    layout = layout_of(head)
     if layout is None:
-        raise Failure(f"{path}: no table of numbers found in its first {len(head)} lines; separators are , ; and tab")
-    try:
-        table = csv.read_csv(
-            path,
-            csv.ReadOptions(skip_rows=layout.first_row, column_names=list(layout.names), use_threads=False),
-            csv.ParseOptions(delimiter=layout.separator),
-            csv.ConvertOptions(
-                decimal_point=layout.decimal,
-                column_types=dict.fromkeys(layout.names, pa.float64()),
-                null_values=["", "NaN", "nan", "NA"],
-            ),
-        )
-    except pa.ArrowInvalid as error:
-        raise Failure(f"{path}{_line(str(error))}: {_reason(str(error), len(layout.names))}") from error
-    columns = {name: np.asarray(table.column(name).to_numpy(), np.float64) for name in layout.names}
-    return Table(columns, dict(zip(layout.names, layout.units, strict=True)), layout.first_row + 1)
+        raise Failure(f"{path}: no table of numbers found in its first {len(head)} lines; separators are , ; | and tab")
+    content = text.encode()
+    kinds = {name: kind for name, kind in zip(layout.names, layout.kinds, strict=True) if kind in ("number", "date")}
+    as_text = {name for name, kind in kinds.items() if kind == "date"}
+    while True:  # each round finds one more column that pyarrow cannot read as numbers
+        try:
+            table = _parsed(content, layout, as_text)
+            break
+        except pa.ArrowInvalid as error:
+            column = _COLUMN.search(str(error))
+            name = layout.names[int(column[1])] if column else ""
+            if name not in kinds or name in as_text:
+                raise Failure(f"{path}{_line(str(error))}: {_reason(str(error), len(layout.names))}") from error
+            as_text.add(name)
+    columns = {}
+    for name, kind in kinds.items():
+        cells = table.column(name)
+        if name in as_text:
+            columns[name] = _converted(path, cells.to_pylist(), kind, layout)
+        else:
+            columns[name] = np.asarray(cells.to_numpy(), np.float64)
+    units = dict(zip(layout.names, layout.units, strict=True))
+    units |= {name: "s" for name in kinds if kinds[name] == "date"}
+    return Table(columns, units, layout.first_row + 1, layout.clock)
 
 
-def _layout(head: Sequence[str]) -> _Layout | None:
-    """Find separator, decimal sign and the first row of numbers: those that give the most columns, then rows.
-
-    The rows decide where the first ones hold whole numbers only.
-    """
-    best, most = None, (0, 0)
-    for separator, decimal in ((",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ",")):
-        first = next((index for index, line in enumerate(head) if _is_row(line, separator, decimal)), None)
-        if first is None:
+def _decoded(content: bytes) -> str:
+    """Decode by the mark at the beginning, else as UTF-8, else as a Western Windows does; one kind of line ends."""
+    encodings = ["utf-8-sig", "cp1252"]
+    if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        encodings = ["utf-16"]
+    elif b"\0" in content[:200]:
+        encodings = ["utf-16-le" if content[1:2] == b"\0" else "utf-16-be"]
+    text = None
+    for encoding in encodings:
+        try:
+            text = content.decode(encoding)
+            break
+        except UnicodeDecodeError:
             continue
-        names, units = _header(head, first, separator)
-        size = len(names), sum(_is_row(line, separator, decimal) for line in head)
-        if size > most:
-            best, most = _Layout(separator, decimal, first, names, units), size
-    return best
+    text = content.decode(encodings[-1], "replace") if text is None else text
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _is_row(line: str, separator: str, decimal: str) -> bool:
-    cells = [cell.strip() for cell in line.split(separator)]
-    return len(cells) > 1 and any(cells) and all(not cell or _is_number(cell, decimal) for cell in cells)
+def _parsed(content: bytes, layout: Layout, as_text: set[str]) -> pa.Table:
+    kinds = zip(layout.names, layout.kinds, strict=True)
+    numbers = {name for name, kind in kinds if kind == "number" and name not in as_text}
+    types = {name: pa.float64() if name in numbers else pa.string() for name in layout.names}
+    return csv.read_csv(
+        io.BytesIO(content),
+        csv.ReadOptions(skip_rows=layout.first_row, column_names=list(layout.names), use_threads=False),
+        csv.ParseOptions(delimiter=layout.separator),
+        csv.ConvertOptions(
+            decimal_point=layout.decimal, column_types=types, null_values=["", "NaN", "nan", "NA"],
+            check_utf8=False,
+        ),
+    )  # fmt: skip
 
 
-def _is_number(cell: str, decimal: str) -> bool:
-    if decimal == "," and "." in cell:
-        return False
-    try:
-        float(cell.replace(decimal, "."))
-    except ValueError:
-        return False
-    return True
+def _converted(path: Path, cells: list[str | None], kind: str, layout: Layout) -> Samples:
+    """Read the cells of a column one by one; dates in seconds from the first."""
+    values = np.full((len(cells), 2), np.nan)  # days, and seconds or the number itself
+    for place, cell in enumerate(cells):
+        number = number_of(cell or "", layout.decimal)
+        plain = (0, number) if number is not None and (kind == "number" or np.isnan(number)) else None
+        value = plain or (moment_of(cell or "") if kind == "date" else None)
+        if value is None:
+            what = "a number" if kind == "number" else "a time"
+            raise Failure(f"{path}:{layout.first_row + 1 + place}: '{cell}' is not {what}")
+        values[place] = value
+    days, seconds = values.T
+    return seconds if kind == "number" else _since_first(days, seconds)
 
 
-def _header(head: Sequence[str], first: int, separator: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return names and units of the columns; without a header the names are column1, column2, ..."""
-    width = len(head[first].split(separator))
-    above = [[cell.strip().strip('"') for cell in line.split(separator)] for line in head[:first] if line.strip()]
-    rows = [row for row in above[-2:] if len(row) == width]
-    written = [""] * width
-    if len(rows) == 2 and all(len(cell) <= 6 for cell in rows[1]) and not any(_UNIT.search(cell) for cell in rows[0]):
-        written = [cell.strip("[]() ") for cell in rows.pop()]
-    names = rows[-1] if rows else [""] * width
-    pairs = zip(names, written, strict=True)
-    units = [found["unit"] if (found := _UNIT.search(name)) else unit for name, unit in pairs]
-    names = [_UNIT.sub("", name).strip() or f"column{index + 1}" for index, name in enumerate(names)]
-    unique = [name if names.index(name) == index else f"{name}.{index + 1}" for index, name in enumerate(names)]
-    return tuple(unique), tuple(units)
+def _since_first(days: Samples, seconds: Samples) -> Samples:
+    """Return seconds from the first moment; a time of the day alone goes on behind midnight."""
+    if not np.any(days):
+        days = np.concatenate([[0.0], np.cumsum(np.diff(seconds) < -43200.0)])
+    return np.asarray((days - days[0]) * 86400.0 + seconds - seconds[0], np.float64)
 
 
 def _line(text: str) -> str:

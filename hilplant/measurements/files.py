@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from hilplant.failure import Failure
 from hilplant.measurements.channels import Channels
-from hilplant.measurements.columns import KNOWN_NAMES, Column, unit_scale
+from hilplant.measurements.columns import KNOWN_NAMES, Column, clock_of, unit_scale
 from hilplant.measurements.frames import FrameSource
 from hilplant.measurements.measurement import Channel
 
@@ -38,6 +39,8 @@ def read_channels(origin: Origin) -> Channels:
         When the ending is unknown or the file cannot be read; it names file and line where there is one.
 
     """
+    if (files := parts(origin.path)) != [origin.path]:
+        return _joined(origin, files)
     ending = _ending(origin.path)
     if ending not in ENDINGS:
         raise Failure(f"{origin.path}: the ending must be one of {', '.join(ENDINGS)}")
@@ -54,6 +57,30 @@ def read_channels(origin: Origin) -> Channels:
     return channels
 
 
+def parts(path: Path) -> list[Path]:
+    """Return the files that a name stands for: several, that are joined by their time, are written A+B."""
+    names = str(path).split("+")
+    return [path] if path.exists() or len(names) < 2 or not all(names) else [Path(name) for name in names]
+
+
+def _joined(origin: Origin, files: list[Path]) -> Channels:
+    """Read files of one time, one channel or more in each; a channel is called by its file: ``C1.Ampl``."""
+    found: dict[str, Channel] = {}
+    notes: list[str] = []
+    for path in files:
+        channels = read_channels(origin._replace(path=path))
+        found |= {f"{path.stem}.{name}": _as_sent(channel) for name, channel in channels.items()}
+        notes += channels.notes
+    return Channels(found, notes)
+
+
+def _as_sent(channel: Channel) -> Channel:
+    """Take a channel of two values at its changes alone, as a logic analyser writes it, as held until the next one."""
+    distances = np.diff(channel.time_s)
+    changes = len(distances) > 1 and float(np.max(distances)) > 3.0 * float(np.min(distances))
+    return replace(channel, held=True) if changes and set(channel.values.tolist()) <= {0.0, 1.0} else channel
+
+
 def _ending(path: Path) -> str:
     ending = path.suffix.lower()
     inner = Path(path.stem).suffix.lower()
@@ -62,8 +89,12 @@ def _ending(path: Path) -> str:
 
 def sha256(path: Path) -> str:
     """Return the SHA-256 of a file's content, which a result carries so that its data can be told."""
-    with open(path, "rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+    digest = hashlib.sha256()
+    for part in parts(path):
+        with open(part, "rb") as file:
+            while block := file.read(1 << 20):
+                digest.update(block)
+    return digest.hexdigest()
 
 
 def _recording(origin: Origin) -> Channels:
@@ -78,7 +109,12 @@ def _csv(origin: Origin) -> Channels:
     from hilplant.measurements.csv_table import read_csv
 
     table = read_csv(origin.path)
-    return _table(origin, table.columns, table.units, table.first_line)
+    columns, units = table.columns, table.units
+    clock = clock_of(origin.time) or (None if origin.time or _time_of(columns) else table.clock)
+    if clock is not None:
+        count = len(next(iter(columns.values())))
+        return _on_one_clock(clock[0] + clock[1] * np.arange(count), columns, units)
+    return _table(origin, columns, units, table.first_line)
 
 
 def _parquet(origin: Origin) -> Channels:
@@ -87,23 +123,29 @@ def _parquet(origin: Origin) -> Channels:
 
     try:
         table = parquet.read_table(origin.path)
-    except pa.ArrowInvalid as error:
+    except (pa.ArrowException, OSError, MemoryError) as error:
         raise Failure(f"{origin.path}: not a Parquet file: {str(error).splitlines()[0]}") from error
     columns, units = {}, {}
     for field in table.schema:
         try:
-            columns[field.name] = np.asarray(table.column(field.name).to_numpy(), np.float64)
+            columns[field.name], date = _numbers(table.column(field.name).to_numpy())
         except (ValueError, TypeError):
             continue  # a column of text or dates is no channel
-        units[field.name] = (field.metadata or {}).get(b"unit", b"").decode()
+        units[field.name] = "s" if date else (field.metadata or {}).get(b"unit", b"").decode("utf-8", "replace")
     return _table(origin, columns, units, 1)
+
+
+def _numbers(values: Any) -> tuple[Any, bool]:
+    """Return a column as floats; dates and durations in seconds from the first, and whether it is one of these."""
+    if values.dtype.kind not in "mM" or not len(values):
+        return np.asarray(values, np.float64), False
+    since = (values - values[0] if values.dtype.kind == "M" else values).astype("timedelta64[ns]")
+    return np.where(np.isnat(since), np.nan, since.astype(np.int64) * 1e-9), True
 
 
 def _table(origin: Origin, columns: Mapping[str, Any], units: Mapping[str, str], first_line: int) -> Channels:
     """Take the time out of a table, in seconds; rows without a time are an error."""
-    column = origin.time or next(
-        (Column(name) for word in KNOWN_NAMES["time"] for name in columns if name.lower() == word), None
-    )
+    column = origin.time or _time_of(columns)
     if column is None or column.name not in columns:
         wanted = f"'{column.name}'" if column else "for the time"
         text = f"no column {wanted}; say --columns time=NAME[unit] with one of {', '.join(columns)}"
@@ -115,6 +157,11 @@ def _table(origin: Origin, columns: Mapping[str, Any], units: Mapping[str, str],
         raise Failure(f"{origin.path}:{first_line + bad[0]}: the row has no time")
     rest = {name: values for name, values in columns.items() if name != column.name}
     return _on_one_clock(time_s, rest, units)
+
+
+def _time_of(columns: Mapping[str, Any]) -> Column | None:
+    words = (Column(name) for word in KNOWN_NAMES["time"] for name in columns if name.lower() == word)
+    return next(words, None)
 
 
 def _on_one_clock(time_s: Any, columns: Mapping[str, Any], units: Mapping[str, str]) -> Channels:

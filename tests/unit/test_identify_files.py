@@ -1,13 +1,10 @@
 """Every kind of file gives the same measurement, and a file that cannot is told in one line with its place."""
 
-from datetime import UTC, datetime
 from pathlib import Path
-from types import SimpleNamespace
 
 import can
 import cantools
 import numpy as np
-import pyarrow as pa
 import pytest
 
 from hilplant.bench import load_bench
@@ -17,7 +14,6 @@ from hilplant.measurements.files import Origin, read_channels, sha256
 from hilplant.measurements.frames import FrameSource
 from hilplant.measurements.measurement import Measurement
 from hilplant.measurements.preparation import Preparation, read_measurement
-from hilplant.recording.mf4_frames import append_frames
 from hilplant.recording.tables import write_table
 from hilplant.signals import ECU_SAID, PUBLISHED
 
@@ -190,26 +186,3 @@ def test_frames_through_the_mapping_of_a_bench(tmp_path: Path) -> None:
     middle = slice(0, COUNT - 2)
     assert np.allclose(made.current_a[middle], AMPERES[middle], atol=0.011)
     assert np.array_equal(made.fast[middle] > 0.5, (np.arange(COUNT) >= 1500)[middle])
-
-
-def test_frames_in_mf4_through_a_database(tmp_path: Path, database: Path) -> None:
-    """Bus logging as ASAM has it, decoded by asammdf with the same database."""
-    path = tmp_path / "log.mf4"
-    messages = cantools.database.load_file(database)
-    frames = []
-    for tick in range(COUNT):
-        pairs = [("Motor", {"Amps": AMPERES[tick], "Volts": VOLTS[tick]}), ("Switch", {"Park": int(PARK[tick])})]
-        for name, values in pairs:
-            message = messages.get_message_by_name(name)
-            frames.append(
-                {"time_ns": tick * 1_000_000, "identifier": message.frame_id, "data": message.encode(values)}
-                | dict.fromkeys(("sent", "extended", "fd", "bitrate_switch", "remote", "error"), False)
-            )
-    write_table(path, {"deadline_s": TIME_S, "x": TIME_S}, {})
-    rows = pa.record_batch({"frames": [frames]})
-    append_frames(SimpleNamespace(batches=lambda: [rows], run=SimpleNamespace(start_utc=datetime.now(UTC))), path)
-    columns = parse_columns("voltage=Motor.Volts,current=Motor.Amps,park=Switch.Park")
-    made = read_measurement(Origin(path, frames=FrameSource(database)), columns, EXACT)
-    assert np.allclose(made.current_a, AMPERES[: len(made)], atol=0.006)
-    assert np.allclose(made.voltage_v, VOLTS[: len(made)], atol=1e-3)
-    assert made.park_steps[-1] == 2
