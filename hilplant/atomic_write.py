@@ -2,6 +2,7 @@
 
 import errno
 import os
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,7 +12,7 @@ from hilplant.failure import Failure
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """Hand out a file ``NAME.part.ENDING`` to write, which takes the place of `path` at the end.
+    """Hand out a new file beside `path`, of its ending, to write; it takes the place of `path` at the end.
 
     When the body fails it is removed, and `path` stays as it was. A link goes on pointing where it did; a device or a
     pipe is written as it is.
@@ -27,8 +28,11 @@ def whole_file(path: Path) -> Iterator[Path]:
     if real.exists() and not real.is_file():
         yield real
         return
-    passing = real.with_name(f"{real.stem}.part{real.suffix}")
+    file, name = tempfile.mkstemp(real.suffix, f".{real.stem}.part-", real.parent)
+    os.close(file)
+    passing = Path(name)
     try:
+        passing.chmod(real.stat().st_mode & 0o777 if real.exists() else 0o666 & ~_umask())
         yield passing
         passing.replace(real)
     finally:
@@ -76,6 +80,12 @@ def claim(path: Path | None) -> None:
         raise cannot_be_written(path, OSError(errno.EISDIR, os.strerror(errno.EISDIR)))
     if not os.access(path if path.exists() else folder, os.W_OK):
         raise cannot_be_written(path, OSError(errno.EACCES, os.strerror(errno.EACCES)))
+
+
+def _umask() -> int:
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return mask
 
 
 def write_text(path: Path, text: str) -> None:

@@ -18,9 +18,10 @@ Kind = Literal["real", "flag", "choice", "count"]
 class Signal:
     """One element: its name, unit, permitted range (inclusive), meaning, and value until something else is said.
 
-    A count never falls; where it outgrows its frame it stays at the highest value, and that is no fault. A real
-    signal may have names for some of its values. The guard looks whether the element is finite if it is `watched`;
-    once it is set it puts `guarded` in its place, or if that is None, keeps a finite number and makes any other 0.
+    A count never falls; where it outgrows its frame it stays at the highest value, or begins again at 0 if it `wraps`:
+    neither is a fault. A real signal may have names for some of its values. The guard looks whether the element is
+    finite if it is `watched`; once it is set it puts `guarded` in its place, or if that is None, keeps a finite number
+    and makes any other 0.
     """
 
     name: str
@@ -34,6 +35,7 @@ class Signal:
     names: tuple[tuple[str, float], ...] = ()
     watched: bool = True
     guarded: float | None = None
+    wraps: bool = False
 
 
 Names = tuple[tuple[str, float], ...]
@@ -61,9 +63,9 @@ def choice(choices: tuple[str, ...], meaning: str, *, watched: bool = True, guar
     return Signal("", "", 0.0, len(choices) - 1.0, meaning, "choice", choices=choices, watched=watched, guarded=guarded)
 
 
-def count(meaning: str, unit: str = "", maximum: float = 2.0**53) -> Signal:
+def count(meaning: str, unit: str = "", maximum: float = 2.0**53, *, wraps: bool = False) -> Signal:
     """Declare what only grows."""
-    return Signal("", unit, 0.0, maximum, meaning, "count")
+    return Signal("", unit, 0.0, maximum, meaning, "count", wraps=wraps)
 
 
 def members(record: type[Any]) -> Iterator[tuple[str, Any]]:

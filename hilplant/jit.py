@@ -6,6 +6,7 @@ import inspect
 import os
 import shutil
 import signal
+import stat
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -35,12 +36,26 @@ def _sources_hash(*rooms: str) -> str:
     return digest.hexdigest()[:16]
 
 
-def _writable(folder: Path) -> bool:
+def _usable(folder: Path) -> bool:
+    """Whether compiled code may be kept in a folder, and run from it: nobody else may have put any there.
+
+    The folder must belong to this user or to whoever the sources belong to, with no right to write for others; and
+    nobody else may replace it, as far up as the root.
+    """
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        real = folder.resolve()
+        return os.access(real, os.W_OK) and _trusted(real, 0o022) and all(_trusted(up, 0o002) for up in real.parents)
     except OSError:
         return False
-    return os.access(folder, os.W_OK)
+
+
+def _trusted(folder: Path, others: int) -> bool:
+    found = folder.stat()
+    if not hasattr(os, "geteuid"):  # rights are another matter outside Unix
+        return True
+    owners = {os.geteuid(), 0, Path(__file__).stat().st_uid}
+    return found.st_uid in owners and (not found.st_mode & others or bool(found.st_mode & stat.S_ISVTX))
 
 
 #: Changes when any model's source or the compiler changes; recordings carry it.
@@ -54,7 +69,7 @@ ROOMS = ("models", "control", "train")
 def _cache_folder() -> Path:
     root = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_path("hilplant"))
     folder = root / f"compiled-{_sources_hash(*ROOMS)}"
-    if _writable(folder):
+    if _usable(folder):
         return folder
     passing = tempfile.mkdtemp(prefix="hilplant-compiled-")
     atexit.register(shutil.rmtree, passing, ignore_errors=True)

@@ -115,7 +115,7 @@ class Outputs(NamedTuple):
 class Status(NamedTuple):
     """How the server itself fares. Counts saturate in the frames that carry them, not here."""
 
-    tick: Annotated[float, count("steps taken by the plant")]
+    tick: Annotated[float, count("steps taken by the plant", wraps=True)]
     mode: Annotated[float, choice(MODES, "what the server is doing")]
     overruns: Annotated[float, count("periods lost because a tick came late")]
     worst_latency_us: Annotated[float, count("longest delay from a deadline to the start of its tick", "us", 1e12)]
@@ -143,6 +143,9 @@ class Status(NamedTuple):
     ]
     stale_frame: Annotated[
         float, count("commands that had waited in the system for longer than their timeout, as after a stall")
+    ]
+    e2e_not_valid: Annotated[
+        float, count("protected frames that were good while AUTOSAR's state machine was not valid, or not yet")
     ]
 
 

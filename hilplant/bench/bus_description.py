@@ -106,6 +106,27 @@ EcuStatus = Annotated[dict[str, Entries[EcuStatusEntry]], Field(min_length=1)]
 _SIGNALS = "signal of the database: what it is to the plant"
 
 
+def _of_a_state(what: str) -> Any:
+    return Field(default=None, ge=0, description=f"{what}, as in the system description")
+
+
+class StateMachineSection(Checked):
+    """AUTOSAR's E2E state machine: how many of the last checks count in each state, and what they must have found."""
+
+    window_size_init: int | None = _of_a_state("checks that count in INIT")
+    window_size_valid: int | None = _of_a_state("checks that count in VALID, the largest window")
+    window_size_invalid: int | None = _of_a_state("checks that count in INVALID")
+    min_ok_state_init: int | None = _of_a_state("good ones that lead from INIT to VALID")
+    max_error_state_init: int | None = _of_a_state("wrong ones that INIT allows")
+    min_ok_state_valid: int | None = _of_a_state("good ones that keep VALID")
+    max_error_state_valid: int | None = _of_a_state("wrong ones that VALID allows")
+    min_ok_state_invalid: int | None = _of_a_state("good ones that lead from INVALID to VALID")
+    max_error_state_invalid: int | None = _of_a_state("wrong ones that this way allows")
+    clear_from_valid_to_invalid: bool | None = Field(
+        default=None, description="whether checks before INVALID are forgotten; no when left out"
+    )
+
+
 class ProtectionSection(Checked):
     """AUTOSAR end-to-end protection of a message; which keys go together is checked with the message's length."""
 
@@ -120,6 +141,9 @@ class ProtectionSection(Checked):
     )
     data_id_mode: str | None = Field(
         default=None, description="how data_id enters the checksum", json_schema_extra={"enum": list(DATA_ID_MODES)}
+    )
+    state_machine: StateMachineSection | None = Field(
+        default=None, description="AUTOSAR's E2E state machine; each frame is judged alone when left out"
     )
 
     def settings(self) -> dict[str, Any]:

@@ -42,6 +42,9 @@ class LoopSettings(Checked):
         default="count",
         description="what a late tick does: it is counted, or the mode becomes degraded, or the run stops",
     )
+    lost_time: Annotated[float, Field(gt=0.0, le=1.0)] = Field(
+        default=0.2, description="share of a second that may be lost before the loop counts as behind: exit code 1"
+    )
     priority: Annotated[int, Field(ge=1, le=99)] = Field(
         default=80, description="SCHED_FIFO priority, where it is permitted"
     )

@@ -54,6 +54,7 @@ class ReceivedMessage:
     limits: tuple[tuple[float, float], ...]
     timeout_ns: int = 0
     protection: Protection | None = None
+    switches: tuple[int, ...] = ()  # which of `targets` are flags or choices
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +124,7 @@ def received_message(
         tuple(_limits(made) for made in links),
         timeout_ns,
         protection,
+        tuple(place for place, made in enumerate(links) if made.plant.kind in ("flag", "choice")),
     )
 
 

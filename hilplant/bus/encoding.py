@@ -57,7 +57,10 @@ def _raw(names: dict[str, Any], field: str, link: Link) -> str:
     scale, offset = link.database.scale, link.database.offset
     if (scale, offset) != (1, 0):
         value = f"({value} - {offset!r}) / {scale!r}"
-    return value if link.database.is_float else f"round({value})"
+    if link.database.is_float:
+        return value
+    lowest, highest = raw_range(link.database)
+    return f"round({value}) % {highest + 1}" if link.plant.wraps and lowest == 0 else f"round({value})"
 
 
 def _inverted(table: dict[int, float]) -> dict[float, int]:

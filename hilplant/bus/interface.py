@@ -34,6 +34,12 @@ class Transport(Protocol):
     def receive(self, limit: int) -> list[Frame]:
         """Return the frames that have arrived, at most `limit`; error frames are marked as such."""
 
+    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
+        """Return what `receive` would, each frame with how long it has waited here [ns], None where nobody knows.
+
+        For after a stall; it costs more.
+        """
+
     def send(self, frame: Frame) -> SendResult:
         """Hand a frame over to the interface."""
 

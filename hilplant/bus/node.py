@@ -11,14 +11,23 @@ from dataclasses import dataclass
 
 from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.frame import Frame
-from hilplant.bus.message_state import Incoming, Outgoing
+from hilplant.bus.message_state import Incoming, Outgoing, value_fault
 from hilplant.bus.protection import Verdict
 from hilplant.bus.transport import SendResult, Transport
 from hilplant.signals import STATUS, STATUS_INDEX
 from hilplant.units import MILLISECOND_NS
 
+#: Frames that wait no longer than this, two ticks and what a tick may be late, count as having come now.
+_PUNCTUAL_NS = 3 * MILLISECOND_NS
 #: How often the interface is asked what it has missed; each time is a system call.
 _CENSUS_EVERY_NS = 100 * MILLISECOND_NS
+
+
+_CAUSES = {
+    Verdict.WRONG_CRC: "wrong_crc",
+    Verdict.WRONG_COUNTER: "wrong_counter",
+    Verdict.NOT_VALID: "e2e_not_valid",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +72,8 @@ class Node:
         self._watched = sorted({index for message in sent for index in message.on_change})
         self._last_watched: list[float] = []
         self._due_ns: float = -math.inf
+        self._own = {(m.identifier, m.extended) for m in sent}
+        self._emptied_ns: int | None = None  # when nothing was left to be received: what comes later arrived later
         self._pending: deque[Frame] = deque()
         self._was_up = True
         self._reopen_ns = 0
@@ -77,16 +88,35 @@ class Node:
         if not self._transport.up:
             self._reopen(now_ns)
         limit = self._settings.frames_per_tick
-        for frame in self._transport.receive(max(1, limit // 4) if shed else limit):
+        limit = max(1, limit // 4) if shed else limit
+        arrivals = self._arrivals(limit, now_ns)
+        for frame, arrived_ns in arrivals:
             if self.observe is not None:
                 self.observe(frame, False)
-            cause = self._take(frame, now_ns)
+            cause = self._take(frame, arrived_ns, now_ns)
             if cause is not None:
                 self._count(cause)
+        if len(arrivals) < limit:
+            self._emptied_ns = now_ns
         if now_ns >= self._census_ns:
             self._census_ns = now_ns + _CENSUS_EVERY_NS
             self.counts[STATUS_INDEX["missed_frame"]] = self._transport.missed
         self._supervise(now_ns)
+
+    def _arrivals(self, limit: int, now_ns: int) -> list[tuple[Frame, int]]:
+        """Receive frames, and say when each arrived: after a stall by its stamp, else now.
+
+        It cannot have been before nothing was left to be received; where the stamp says nothing, suppose it was then.
+        """
+        emptied_ns = self._emptied_ns
+        if emptied_ns is not None and now_ns - emptied_ns <= _PUNCTUAL_NS:
+            return [(frame, now_ns) for frame in self._transport.receive(limit)]
+        earliest_ns = -(1 << 62) if emptied_ns is None else emptied_ns
+        unknown_ns = now_ns if emptied_ns is None else emptied_ns
+        return [
+            (frame, unknown_ns if waited_ns is None else max(now_ns - waited_ns, earliest_ns))
+            for frame, waited_ns in self._transport.receive_late(limit)
+        ]
 
     def send(self, now_ns: int, values: Sequence[float]) -> None:
         """Send each message that is due, or whose watched signals have changed; `values` by codec order."""
@@ -120,34 +150,43 @@ class Node:
         """Give the interface back."""
         self._transport.close()
 
-    def _take(self, frame: Frame, now_ns: int) -> str | None:
+    def _take(self, frame: Frame, arrived_ns: int, now_ns: int) -> str | None:
         """Apply one frame; a frame that is refused changes nothing, and its cause is returned."""
         identifier, data, extended, fd, _, remote, error = frame
         if error or remote:
             return "error_frame" if error else "remote_frame"
         incoming = self._incoming.get((identifier, extended))
         if incoming is None:
-            return None if (identifier, extended) in self._settings.others else "unknown_frame"
+            return self._foreign((identifier, extended))
         message = incoming.message
         if fd != message.fd or len(data) != message.length:
             return "wrong_length" if fd == message.fd else "fd_frame"
         if incoming.checker is not None:
             verdict = incoming.checker.check(data)
             if verdict is not Verdict.OK:
-                return "wrong_crc" if verdict is Verdict.WRONG_CRC else "wrong_counter"
+                return _CAUSES[verdict]
         decoded = message.decode(data)
-        cause = _value_fault(decoded, message.limits)
+        cause = value_fault(decoded, message.limits)
         if cause is None:
-            self._accept(incoming, decoded, now_ns)
+            for target, value in zip(message.targets, decoded):  # noqa: B905 - as in value_fault
+                if value is not None:
+                    self.values[target] = value
+            if incoming.is_stale(arrived_ns, now_ns):
+                return "stale_frame"
+            self._accept(incoming, decoded, arrived_ns)
         return cause
 
-    def _accept(self, incoming: Incoming, decoded: Sequence[float | None], now_ns: int) -> None:
-        if incoming.checker is not None:
-            incoming.checker.accept()
-        for target, value in zip(incoming.message.targets, decoded):  # noqa: B905 - as in _value_fault
-            if value is not None:
-                self.values[target] = value
-        incoming.valid_ns = now_ns
+    def _foreign(self, key: tuple[int, bool]) -> str | None:
+        """Return what is wrong with a frame that is not for this node."""
+        if key in self._own:
+            return "own_identifier"
+        return None if key in self._settings.others else "unknown_frame"
+
+    def _accept(self, incoming: Incoming, decoded: Sequence[float | None], arrived_ns: int) -> None:
+        if incoming.message.timeout_ns and incoming.message.switches and incoming.takes_back(decoded, arrived_ns):
+            self._count("alternating")
+        if incoming.valid_ns is None or arrived_ns > incoming.valid_ns:
+            incoming.valid_ns = arrived_ns
         incoming.late = False
 
     def _supervise(self, now_ns: int) -> None:
@@ -213,11 +252,3 @@ class Node:
 
     def _count(self, cause: str) -> None:
         self.counts[STATUS_INDEX[cause]] += 1
-
-
-def _value_fault(values: Sequence[float | None], limits: Sequence[tuple[float, float]]) -> str | None:
-    """Return what is wrong with decoded values, None if nothing; a value that is absent is not wrong."""
-    for value, (lowest, highest) in zip(values, limits):  # noqa: B905 - lengths agree; `strict` costs 0.2 us a call
-        if value is not None and not lowest <= value <= highest:
-            return "out_of_range" if math.isfinite(value) else "non_finite"
-    return None

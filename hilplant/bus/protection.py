@@ -1,31 +1,19 @@
 """AUTOSAR end-to-end protection: a checksum and an alive counter in each frame.
 
-The checksums come from the `autosar-e2e` library; what is added here is the sequence of counters, and a check
-that leaves everything as it is until the frame has been accepted. Source: AUTOSAR PRS E2E Protocol.
+The checksums come from the `autosar-e2e` library, which has no more than these; the sequence of counters is added
+here, and the state machine in :mod:`hilplant.bus.e2e_state`. Source: AUTOSAR Foundation, PRS E2E Protocol.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import Enum
 from typing import Any, Self
 
 from hilplant.bus.e2e_profiles import PROFILES, Profile
-from hilplant.failure import Failure
+from hilplant.bus.e2e_state import ProtectionError, StateMachine, StateMachineSettings, Trust, Verdict
 
-
-class ProtectionError(Failure):
-    """Settings of a protection that cannot work; says which and what would be right."""
-
-
-class Verdict(Enum):
-    """What a check found."""
-
-    OK = "ok"
-    WRONG_CRC = "wrong checksum, data id or length"
-    WRONG_COUNTER = "counter repeated or out of sequence"
-
+__all__ = ["Checker", "Protection", "ProtectionError", "Protector", "Verdict"]
 
 _DATA_IDS_OF_2 = 16
 _BYTE_MAX = 255
@@ -39,7 +27,7 @@ class Protection:
     (profile 2 has `data_id_list`, 16 of them, instead); `offset` the byte at which the header starts;
     `data_id_mode` both, alternating, low or nibble (profile 1), both or nibble (profile 11).
     `max_delta_counter` is the largest step of the counter that is accepted: 1, the default, forgives no lost
-    frame, 3 forgives two in a row.
+    frame, 3 forgives two in a row. Without `state_machine` each frame is judged alone.
     """
 
     profile: int
@@ -49,6 +37,7 @@ class Protection:
     offset: int = 0
     max_delta_counter: int = 1
     data_id_mode: str = "both"
+    state_machine: StateMachineSettings | None = None
 
     def __post_init__(self) -> None:
         """Refuse settings that cannot work."""
@@ -81,12 +70,18 @@ class Protection:
                 raise ProtectionError(f"protection has no key '{name}'; it has {', '.join(known)}")
             if name == "data_id_mode" and not isinstance(value, str):
                 raise ProtectionError(f"{name} must be a word, not {value!r}")
-            if name not in ("data_id_list", "data_id_mode") and type(value) is not int:
+            if name not in ("data_id_list", "data_id_mode", "state_machine") and type(value) is not int:
                 raise ProtectionError(f"{name} must be a whole number, not {value!r}")
         if "profile" not in settings:
             raise ProtectionError(f"profile is missing; it must be one of {', '.join(map(str, PROFILES))}")
         identities = _identities(settings.get("data_id_list", ()))
-        made = cls(**{**settings, "data_id_list": identities, "length": length})
+        machine = settings.get("state_machine")
+        built = {
+            "data_id_list": identities,
+            "length": length,
+            "state_machine": None if machine is None else StateMachineSettings.from_settings(machine),
+        }
+        made = cls(**{**settings, **built})
         if not identities and "data_id" not in settings:
             raise ProtectionError("data_id is missing: the number of this message that both ends know")
         return made
@@ -144,37 +139,44 @@ class _Header:
 class Checker:
     """Judges received frames of one message.
 
-    Any counter is good for the first frame, and again after `reset`. From then on it must have moved on
-    since the last frame that was accepted, by no more than `max_delta_counter`.
+    Any counter is good for the first frame, and again after `reset`. From then on it must have moved on since the last
+    frame whose checksum was right, used or not, by no more than `max_delta_counter`: PRS E2E Protocol, E2E_PXXCheck, in
+    which each such frame's counter becomes the next one's reference. So one lost frame costs one frame more.
     """
 
     def __init__(self, protection: Protection) -> None:
         self._header = _Header(protection)
         self._max_delta = protection.max_delta_counter
         self._last: int | None = None
-        self._candidate: int | None = None
+        self._machine = StateMachine(protection.state_machine) if protection.state_machine else None
+
+    @property
+    def invalid(self) -> bool:
+        """Whether the state machine has found that the message is not to be trusted."""
+        return self._machine is not None and self._machine.state is Trust.INVALID
 
     def check(self, data: bytes) -> Verdict:
-        """Judge a frame; nothing is remembered of it unless `accept` follows."""
-        header = self._header
-        copy = bytearray(data)  # the library's profiles 1 and 11 check nothing that cannot be changed
-        if not header.profile.check(copy, header.identity, **header.keywords):
-            return Verdict.WRONG_CRC
-        counter = header.counter(data)
-        if self._last is not None:
-            delta = (counter - self._last) % header.profile.modulus
-            if not 1 <= delta <= self._max_delta:
-                return Verdict.WRONG_COUNTER
-        self._candidate = counter
-        return Verdict.OK
-
-    def accept(self) -> None:
-        """Count the frame that was checked last and found good as received."""
-        self._last = self._candidate
+        """Judge a frame."""
+        verdict = self._judge(data)
+        if self._machine is not None and self._machine.add(verdict) is not Trust.VALID and verdict is Verdict.OK:
+            return Verdict.NOT_VALID
+        return verdict
 
     def reset(self) -> None:
         """Begin anew: the next frame may have any counter. For when frames have stayed away for too long."""
         self._last = None
+        if self._machine is not None:
+            self._machine.reset()
+
+    def _judge(self, data: bytes) -> Verdict:
+        header = self._header
+        copy = bytearray(data)  # the library's profiles 1 and 11 check nothing that cannot be changed
+        if not header.profile.check(copy, header.identity, **header.keywords):
+            return Verdict.WRONG_CRC
+        last, self._last = self._last, header.counter(data)
+        if last is not None and not 1 <= (self._last - last) % header.profile.modulus <= self._max_delta:
+            return Verdict.WRONG_COUNTER
+        return Verdict.OK
 
 
 class Protector:

@@ -5,11 +5,13 @@ import errno
 import os
 import socket
 import struct
+import time
 from pathlib import Path
 from typing import Any
 
 from hilplant.bus.frame import Frame
 from hilplant.bus.interface import SendResult, TransportError
+from hilplant.units import SECOND_NS
 
 _HEADER = struct.Struct("=IBBBB")  # identifier with flags, length, FD flags, two reserved bytes
 _CLASSIC = struct.Struct("=IB3x8s")
@@ -21,10 +23,13 @@ _ALL_ERRORS = 0x1FFF_FFFF
 _BITRATE_SWITCH = 0x01
 _SO_MEMINFO, _MEMINFO = 55, struct.Struct("=9I")  # the last of the nine counts what the kernel dropped
 _SO_RCVBUFFORCE = 33
+_SO_TIMESTAMPNS, _TIMESPEC = 35, struct.Struct("@ll")  # seconds and nanoseconds of the time of day
+_ANCILLARY_BYTES = 64
 _RECEIVE_BUFFER = 1 << 22  # bytes; some 5000 frames, as each takes up far more than its content
 _FULL = frozenset({errno.ENOBUFS, errno.EAGAIN})
 _REFUSED = frozenset({errno.EINVAL, errno.EMSGSIZE})
 _INTERFACES = Path("/sys/class/net")
+_LISTED = Path("/proc/self/net/dev")  # of this process's network namespace, which /sys need not show
 _CAN_DEVICE = "280"  # ARPHRD_CAN
 _SETTINGS = ("interface", "channel", "fd")
 
@@ -68,6 +73,20 @@ class SocketCan:
             frames.append(self._frame(size))
         return frames
 
+    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
+        """Return the frames that have arrived, with the kernel's word on when; see `Transport`."""
+        frames: list[tuple[Frame, int | None]] = []
+        while self._up and len(frames) < limit:
+            try:
+                size, ancillary, _, _ = self._socket.recvmsg_into([self._buffer], _ANCILLARY_BYTES)
+            except BlockingIOError:
+                break
+            except OSError:
+                self._up = False
+                break
+            frames.append((self._frame(size), _waited_ns(ancillary)))
+        return frames
+
     def send(self, frame: Frame) -> SendResult:
         """Hand a frame over to the kernel."""
         if not self._up:
@@ -84,8 +103,14 @@ class SocketCan:
         return SendResult.SENT
 
     def reopen(self) -> bool:
-        """Try once, with a new socket: one whose interface was removed never works again."""
+        """Try once, with a new socket: one whose interface was removed never works again.
+
+        Binding to an interface that is not there has the kernel look for a module of its name, which takes a privileged
+        caller 0.1 s and more; so it is looked for first.
+        """
         self.close()
+        if not _there(self._channel):
+            return False
         with contextlib.suppress(OSError, TransportError):
             self._socket = _connect(self._channel)
             self._up = True
@@ -169,6 +194,7 @@ def _connect(channel: str) -> socket.socket:
     try:
         opened.setsockopt(socket.SOL_CAN_RAW, socket.CAN_RAW_FD_FRAMES, 1)
         opened.setsockopt(socket.SOL_CAN_RAW, _ERROR_FILTER, _ALL_ERRORS)
+        opened.setsockopt(socket.SOL_SOCKET, _SO_TIMESTAMPNS, 1)
         _enlarge(opened)
         opened.bind((channel,))
         failed = opened.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
@@ -178,6 +204,16 @@ def _connect(channel: str) -> socket.socket:
         opened.close()
         raise
     return opened
+
+
+def _waited_ns(ancillary: list[tuple[int, int, bytes]]) -> int | None:
+    """Return how long ago the kernel took a frame in, by its stamp [ns]; None when the clock was set back since."""
+    for level, kind, data in ancillary:
+        if (level, kind) == (socket.SOL_SOCKET, _SO_TIMESTAMPNS) and len(data) == _TIMESPEC.size:
+            seconds, nanoseconds = _TIMESPEC.unpack(data)
+            waited_ns: int = time.time_ns() - seconds * SECOND_NS - nanoseconds
+            return waited_ns if waited_ns >= 0 else None
+    return None
 
 
 def _enlarge(opened: socket.socket) -> None:
@@ -205,6 +241,14 @@ def _available() -> str:
             if kind.read_text(encoding="ascii").strip() == _CAN_DEVICE:
                 found.append(kind.parent.name)
     return f"there is {', '.join(found)}" if found else "there is none"
+
+
+def _there(channel: str) -> bool:
+    """Whether the kernel has the interface; where it does not tell, suppose so."""
+    try:
+        return f"{channel}:" in _LISTED.read_text(encoding="ascii", errors="replace").split()
+    except OSError:
+        return True
 
 
 def _mtu(channel: str) -> int:

@@ -6,7 +6,7 @@ missed, counts them, and goes on with the next deadline; the step itself is neve
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from hilplant.models.plant import tick as plant_tick
 from hilplant.models.records import STATE_INDEX
 from hilplant.runtime.clock import Clock
 from hilplant.runtime.latency import Latency
+from hilplant.runtime.lost_time import LostTime
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.watchdog import Watchdog
 from hilplant.signals import INPUTS, MODES, OUTPUT_INDEX, OUTPUTS, STATUS, STATUS_INDEX
@@ -81,10 +82,17 @@ class Progress:
     stopped_by_overrun: bool = False
 
 
+class Late(NamedTuple):
+    """What a late tick leads to: `policy` is count, degrade or stop; `lost_time` the share of a second that may go."""
+
+    policy: str = "count"
+    lost_time: float = 1.0
+
+
 class Loop:
     """One plant on one bus, tick by tick."""
 
-    def __init__(self, plant: PlantRows, node: Node, clock: Clock, ring: Ring | None, on_overrun: str) -> None:
+    def __init__(self, plant: PlantRows, node: Node, clock: Clock, ring: Ring | None, late: Late) -> None:
         self.progress = Progress()
         self.latency = Latency()
         #: Called in each tick in which no command is lost.
@@ -95,8 +103,10 @@ class Loop:
         self._node = node
         self._clock = clock
         self._ring = ring
-        self._on_overrun = on_overrun
+        self._on_overrun = late.policy
+        self.lost_time = LostTime(late.lost_time)
         self._degraded_until_ns = -1
+        self._behind = False
         self._line = np.zeros(ROW_WIDTH)
         self._inputs = self._line[_FIRST_INPUT:_FIRST_OUTPUT]
         self._outputs = self._line[_FIRST_OUTPUT:_FIRST_STATUS]
@@ -125,7 +135,7 @@ class Loop:
                 break
             self.latency.add(late_ns)
             self.tick(deadline_ns - start_ns)
-            if feed_ns and deadline_ns >= next_feed_ns:
+            if feed_ns and deadline_ns >= next_feed_ns and not self._behind:
                 watchdog.feed()
                 next_feed_ns = deadline_ns + feed_ns
             deadline_ns += step_ns
@@ -134,6 +144,7 @@ class Loop:
     def tick(self, bus_ns: int) -> None:
         """Do one tick; `bus_ns` is its deadline counted from the loop's start."""
         self._bus_ns = bus_ns
+        self._behind = self.lost_time.behind(bus_ns)
         node = self._node
         node.receive(bus_ns, shed=bus_ns < self._degraded_until_ns)
         self._step(safe=node.lost, mode=self._mode(bus_ns))
@@ -184,6 +195,8 @@ class Loop:
             return SAFE
         if self._node.lost:
             return WAITING if self._node.waiting else SAFE
+        if self._behind:
+            return BEHIND
         return DEGRADED if bus_ns < self._degraded_until_ns else RUNNING
 
     def _status_values(self, mode: float) -> Sequence[float]:
@@ -200,6 +213,7 @@ class Loop:
     def _overrun(self, periods: int) -> int:
         """Count the periods that were missed and return how far the deadline moves on [ns]."""
         self.progress.overruns += periods
+        self.lost_time.add(periods * self._plant.step_ns)
         if self._on_overrun == "stop":
             self.progress.stopped_by_overrun = True
         elif self._on_overrun == "degrade":

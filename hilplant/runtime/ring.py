@@ -72,7 +72,7 @@ class Ring:
 
         Raises
         ------
-        OSError
+        Failure
             When the shared memory does not hold it.
         """
         shared = SharedMemory.create(_HEADER_BYTES + rows * row_width * 8 + frames * _FRAME_BYTES)
@@ -103,9 +103,9 @@ class Ring:
         return self._words[_LOST]
 
     @property
-    def row_written(self) -> bool:
-        """Whether there has been a row."""
-        return self._words[_ROW_HEAD] > 0
+    def rows_written(self) -> int:
+        """How many rows there have been."""
+        return self._words[_ROW_HEAD]
 
     @property
     def recording(self) -> int:

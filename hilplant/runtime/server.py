@@ -10,7 +10,7 @@ from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.node import LinkSettings, Node
 from hilplant.bus.transport import Transport, open_transport
 from hilplant.runtime.clock import Clock, WallClock
-from hilplant.runtime.loop import Control, Loop, PlantRows
+from hilplant.runtime.loop import Control, Late, Loop, PlantRows
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.scheduling import Privilege, real_time
 from hilplant.runtime.watchdog import Watchdog
@@ -23,6 +23,10 @@ class LoopSettings(Protocol):
     @property
     def on_overrun(self) -> str:
         """count, degrade or stop."""
+
+    @property
+    def lost_time(self) -> float:
+        """Share of a second beyond which the loop counts as behind."""
 
     @property
     def priority(self) -> int:
@@ -80,10 +84,16 @@ class Summary:
     latency_p999_us: float = 0.0
     latency_max_us: float = 0.0
     stopped_by_overrun: bool = False
+    fell_behind: bool = False
     recording_complete: bool = True
     first_tick_monotonic_ns: int = 0
     counts: dict[str, int] = field(default_factory=dict)
     privileges: list[Privilege] = field(default_factory=list)
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether the run was what it was to be: in real time as the bench wants it, and recorded without a gap."""
+        return self.recording_complete and not (self.stopped_by_overrun or self.fell_behind)
 
 
 class StopRequest:
@@ -103,12 +113,19 @@ class StopRequest:
 
 @contextmanager
 def ended_by_signals(stop: StopRequest) -> Iterator[None]:
-    """Let SIGTERM and SIGINT ask for the end instead of breaking a tick in two."""
-    before = {number: signal.signal(number, stop.ask) for number in (signal.SIGTERM, signal.SIGINT)}
+    """Let SIGTERM, SIGINT and the end of the terminal ask for the end instead of breaking a tick in two.
+
+    A signal that is ignored already, as `nohup` does with SIGHUP, stays so.
+    """
+    numbers = [signal.SIGTERM, signal.SIGINT, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
+    before = {number: signal.getsignal(number) for number in numbers}
+    caught = {number: handler for number, handler in before.items() if handler != signal.SIG_IGN}
+    for number in caught:
+        signal.signal(number, stop.ask)
     try:
         yield
     finally:
-        for number, handler in before.items():
+        for number, handler in caught.items():
             signal.signal(number, handler)
 
 
@@ -123,7 +140,7 @@ def build_loop(bench: ServedBench, transport: Transport, clock: Clock, ring: Rin
     values = [float(value) for value in bench.input_row]
     settings = replace(link_settings(bench.loop), others=bench.others)
     node = Node(bench.receive, bench.send, transport, settings, values)
-    return Loop(bench, node, clock, ring, bench.loop.on_overrun)
+    return Loop(bench, node, clock, ring, Late(bench.loop.on_overrun, bench.loop.lost_time))
 
 
 def serve(  # noqa: PLR0913, PLR0917
@@ -156,7 +173,8 @@ def serve(  # noqa: PLR0913, PLR0917
             if on_start is not None:
                 on_start(privileges)
             watchdog.ready()
-            loop.run(ticks, stop, watchdog)
+            if not stop():  # not even the last tick of a run that was ended before it began
+                loop.run(ticks, stop, watchdog)
             watchdog.stopping()
     finally:
         transport.close()
@@ -173,6 +191,7 @@ def _summary(loop: Loop, privileges: list[Privilege]) -> Summary:
         latency_p999_us=latency.quantile_us(0.999),
         latency_max_us=latency.worst_ns / MICROSECOND_NS,
         stopped_by_overrun=loop.progress.stopped_by_overrun,
+        fell_behind=loop.lost_time.exceeded,
         first_tick_monotonic_ns=loop.progress.first_tick_ns,
         counts=loop.counts(),
         privileges=privileges,

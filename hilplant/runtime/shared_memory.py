@@ -14,6 +14,8 @@ import tempfile
 import weakref
 from pathlib import Path
 
+from hilplant.failure import Failure
+
 _PREFIX = "hilplant-ring-"
 
 
@@ -41,18 +43,24 @@ class SharedMemory:
 
         Raises
         ------
-        OSError
+        Failure
             When there is no room for it: a fatal signal in the loop otherwise, at the first touch of a page.
         """
         _remove_abandoned()
         path = _folder() / f"{_PREFIX}{os.getpid()}-{secrets.token_hex(4)}"
-        file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
         try:
-            _reserve(file, size)
-        except OSError:
-            path.unlink()
-            os.close(file)
-            raise
+            file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
+            try:
+                _reserve(file, size)
+            except OSError:
+                path.unlink()
+                os.close(file)
+                raise
+        except OSError as error:
+            need = f"{path.parent} has no room for {size / 1e6:.0f} MB of shared memory"
+            raise Failure(
+                f"{need} ({error.strerror}); make it larger: mount -o remount,size=256m {path.parent}"
+            ) from error
         return cls(path, file)
 
     @classmethod
@@ -64,6 +72,11 @@ class SharedMemory:
     def close(self) -> None:
         """Let go of the block; the last one to do so removes it. Views of its bytes stay valid."""
         self._let_go()
+
+
+def names() -> list[str]:
+    """Return the names of all blocks that there are."""
+    return sorted(path.name for path in _folder().glob(f"{_PREFIX}*"))
 
 
 def _folder() -> Path:

@@ -44,6 +44,9 @@ class _End:
         self.other.coming.append(frame)
         return SendResult.SENT
 
+    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
+        return [(frame, 0) for frame in self.receive(limit)]
+
     def reopen(self) -> bool:
         return True
 

@@ -18,14 +18,15 @@ from hilplant.bus.codec import SentMessage
 from hilplant.bus.frame import Frame
 from hilplant.bus.transport import SendResult
 from hilplant.runtime.clock import VirtualClock
-from hilplant.runtime.loop import SAFE, WAITING, Loop
+from hilplant.runtime.loop import BEHIND, SAFE, WAITING, Loop
 from hilplant.runtime.server import StopRequest, build_loop
 from hilplant.runtime.watchdog import Watchdog
 from hilplant.signals import PUBLISHED_INDEX
 
 RELAY, SUPPLY, ENVIRONMENT, BLADES, MOTOR_STATUS, LINKAGE, FORCES = 0x120, 0x121, 0x122, 0x123, 0x200, 0x202, 0x204
 BETWEEN_OTHERS = (0x110, 0x130)  # from the stalk to the ECU and back
-SLOW = Frame(RELAY, b"\x01\x00")
+SLOW, OFF = Frame(RELAY, b"\x01\x00"), Frame(RELAY, b"\x00\x00")
+OWN = (0x200, 0x201, 0x202, 0x203, 0x204, 0x205, 0x210, 0x211, 0x212, 0x213, 0x214, 0x215)
 STALK_COMMAND, ECU_STATUS = 0x110, 0x130  # between ECU and driver: none of the plant's business
 STEP_NS = 1_000_000
 TIMEOUT_TICKS = 500
@@ -41,6 +42,7 @@ class ListedTransport:
         self.can_reopen = True
         self.reopened = 0
         self.arrived: deque[Frame] = deque()
+        self.waited_ns: deque[int | None] = deque()  # of what has arrived; 0 where nothing is left of it
         self.sent: list[Frame] = []
 
     def receive(self, limit: int) -> list[Frame]:
@@ -55,6 +57,9 @@ class ListedTransport:
             return SendResult.FULL
         self.sent.append(frame)
         return SendResult.SENT
+
+    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
+        return [(frame, self.waited_ns.popleft() if self.waited_ns else 0) for frame in self.receive(limit)]
 
     def reopen(self) -> bool:
         self.reopened += 1
@@ -141,12 +146,74 @@ def test_a_lost_command_opens_the_relays_until_it_is_back(rig: Rig) -> None:
     assert rig.value("terminal_v") == 13.5
 
 
+@pytest.mark.parametrize("waited_ms", [[5000, 4990, 4980], [None, None, None], [100_000, 700, None]])
+def test_after_a_stall_old_commands_are_lost_ones_until_a_fresh_one_comes(
+    rig: Rig, waited_ms: list[int | None]
+) -> None:
+    """Five seconds without a tick; where the interface does not say how old a frame is, it counts as old."""
+    rig.tick(1000, command_every=50)
+    rig.now += 5000
+    rig.transport.waited_ns.extend([None if wait is None else wait * STEP_NS for wait in waited_ms])
+    rig.tick(1, SLOW, OFF, SLOW)
+    assert (rig.value("terminal_v"), rig.value("mode")) == (0.0, SAFE)
+    assert rig.counts() == {"stale_frame": 3, "timeout": 1}
+    rig.tick(200)
+    assert rig.value("terminal_v") == 0.0
+    rig.tick(1, SLOW)
+    assert rig.value("terminal_v") == 13.5
+    assert rig.counts() == {"stale_frame": 3, "timeout": 1}
+
+
+def test_after_a_stall_a_command_that_has_just_come_holds(rig: Rig) -> None:
+    rig.tick(1000, command_every=50)
+    rig.now += 5000
+    rig.transport.waited_ns.extend([4000 * STEP_NS, 30 * STEP_NS])
+    rig.tick(1, OFF, SLOW)
+    assert rig.value("terminal_v") == 13.5
+    assert rig.counts() == {"stale_frame": 1}
+
+
+def test_a_backlog_of_more_than_a_tick_takes_drives_nothing_while_it_is_worked_off(rig: Rig) -> None:
+    rig.tick(1000, command_every=50)
+    rig.now += 5000
+    rig.transport.waited_ns.extend([(5000 - place) * STEP_NS for place in range(450)])
+    rig.transport.arrived.extend([SLOW] * 450)
+    for _ in range(100):
+        rig.tick()
+        assert rig.value("terminal_v") == 0.0
+    assert rig.counts()["stale_frame"] == 450
+
+
+def test_what_waited_since_before_the_start_commands_nothing(rig: Rig) -> None:
+    rig.transport.waited_ns.append(3000 * STEP_NS)
+    rig.tick(1, SLOW)
+    assert (rig.value("terminal_v"), rig.value("mode")) == (0.0, WAITING)
+    assert rig.counts() == {"stale_frame": 1}
+
+
+@pytest.mark.parametrize(("period", "other_period", "noticed"), [(50, 50, True), (50, 20, True), (100, 50, True)])
+def test_two_senders_of_one_command_are_noticed(rig: Rig, period: int, other_period: int, noticed: bool) -> None:
+    for _ in range(2000):
+        frames = [SLOW] * (rig.now % period == 0) + [OFF] * (rig.now % other_period == 11)
+        rig.tick(1, *frames)
+    assert (rig.counts().get("alternating", 0) > 20) is noticed
+
+
+def test_one_sender_that_switches_often_is_not_taken_for_two(rig: Rig) -> None:
+    for _ in range(20):
+        rig.tick(200, *[SLOW, SLOW], command_every=50)
+        rig.tick(1, OFF)
+        rig.tick(199)
+    assert rig.counts() == {}
+
+
 FRAMES_BY_CAUSE = {
     "unknown_frame": [
         Frame(0x7FF, b"\x01\x00"),
         Frame(RELAY, b"\x01\x00", extended=True),
-        Frame(MOTOR_STATUS, bytes(8)),
+        Frame(MOTOR_STATUS, bytes(8), extended=True),
     ],
+    "own_identifier": [Frame(MOTOR_STATUS, bytes(8)), Frame(LINKAGE, b""), Frame(0x214, bytes(8), fd=True)],
     "wrong_length": [Frame(RELAY, b""), Frame(RELAY, b"\x01"), Frame(RELAY, bytes(3)), Frame(RELAY, bytes(8))],
     "remote_frame": [Frame(RELAY, b"", remote=True), Frame(0x1FFFFFFF, b"", extended=True, remote=True)],
     "fd_frame": [Frame(RELAY, b"\x01\x00", fd=True), Frame(RELAY, bytes(64), fd=True)],
@@ -261,6 +328,8 @@ def expected_cause(frame: Frame) -> str:
         return "error_frame"
     if frame.remote:
         return "remote_frame"
+    if frame.identifier in OWN and not frame.extended:
+        return "own_identifier"
     if frame.extended or frame.identifier not in lengths:
         between_others = frame.identifier in (STALK_COMMAND, ECU_STATUS) and not frame.extended
         return "between_others" if between_others else "unknown_frame"
@@ -290,6 +359,7 @@ def test_a_million_random_frames_are_counted_by_cause_and_the_plant_goes_on(rig:
     assert others > 100
     counts = rig.counts()
     counts.pop("saturated", None)
+    counts.pop("alternating", None)
     assert counts == dict(wanted)
     assert rig.loop.progress.ticks == 10_000
     rig.tick(TIMEOUT_TICKS + 2)
@@ -347,3 +417,68 @@ def test_the_bench_decides_what_a_late_tick_leads_to(rig: Rig, policy: str, stop
     loop.run(1000, StopRequest(), Watchdog())
     assert loop.progress.stopped_by_overrun is stops
     assert (loop.progress.ticks < 200) is stops
+
+
+class StallingClock(VirtualClock):
+    """Comes `late_ms` late at every tick that is due in the given seconds."""
+
+    def __init__(self, late_ms: float, seconds: range) -> None:
+        super().__init__()
+        self.late_ns, self.seconds = round(late_ms * 1e6), seconds
+
+    def sleep_until_ns(self, deadline_ns: int) -> None:
+        super().sleep_until_ns(deadline_ns)
+        if deadline_ns // 10**9 in self.seconds:
+            self.time_ns = max(self.time_ns, deadline_ns + self.late_ns)
+
+
+class CountingWatchdog(Watchdog):
+    period_ns = 100_000_000
+    fed = 0
+
+    def feed(self) -> None:
+        self.fed += 1
+
+
+@pytest.mark.parametrize(("late_ms", "behind"), [(1.2, True), (0.9, False)])
+def test_a_loop_that_loses_too_much_time_says_so_and_does_not_feed_the_watchdog(
+    rig: Rig, late_ms: float, behind: bool
+) -> None:
+    """A tick that is 1.2 ms late each time loses every second period, from second 1 to second 3 of 6."""
+    loop = build_loop(rig.bench, transport := ListedTransport(), StallingClock(late_ms, range(1, 4)))
+    watchdog = CountingWatchdog()
+    modes = []
+
+    def command_and_look() -> bool:
+        transport.arrived.append(SLOW)
+        modes.append(int(loop._published[PUBLISHED_INDEX["mode"]]))
+        return False
+
+    loop.run(6000, command_and_look, watchdog)
+    assert loop.lost_time.exceeded is behind
+    assert (int(BEHIND) in modes) is behind
+    assert modes[-1] != int(BEHIND), "it has caught up"
+    assert (watchdog.fed < 45) is behind
+    assert watchdog.fed > 15
+
+
+def test_single_hiccups_do_not_make_a_loop_fall_behind(rig: Rig) -> None:
+    class Hiccup(VirtualClock):
+        def sleep_until_ns(self, deadline_ns: int) -> None:
+            super().sleep_until_ns(deadline_ns)
+            if deadline_ns % 10**9 == 0:
+                self.time_ns += 150_000_000
+
+    loop = build_loop(rig.bench, ListedTransport(), Hiccup())
+    loop.run(5000, StopRequest(), Watchdog())
+    assert loop.progress.overruns >= 600
+    assert not loop.lost_time.exceeded
+
+
+def test_the_count_of_ticks_begins_again_where_its_frame_ends(rig: Rig) -> None:
+    rig.loop.progress.ticks = 2**32 - 60
+    rig.tick(150)
+    ticks = [int.from_bytes(f.data[:4], "little") for f in rig.transport.sent if f.identifier == 0x210]
+    assert ticks[0] == 2**32 - 60
+    assert ticks[-1] == 100 - 60
+    assert rig.counts() == {}

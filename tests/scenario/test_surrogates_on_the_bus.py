@@ -34,6 +34,9 @@ class Sent:
         self.frames.append((self.now, frame))
         return SendResult.SENT
 
+    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
+        return [(frame, 0) for frame in self.receive(limit)]
+
     def reopen(self) -> bool:
         return True
 

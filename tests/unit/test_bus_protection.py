@@ -84,7 +84,6 @@ def test_a_long_sequence_is_accepted_and_only_reserved_bits_change(protection: P
     reserved = protection.reserved_places()
     for frame in frames(protection, 600):
         assert checker.check(frame) is Verdict.OK
-        checker.accept()
         changed = int.from_bytes(frame, "little") ^ int.from_bytes(bytes(range(32)), "little")
         assert all(place in reserved for place in range(8 * 32) if changed >> place & 1)
 
@@ -100,14 +99,30 @@ def test_every_flipped_bit_is_found(protection: Protection) -> None:
 
 
 @pytest.mark.parametrize("protection", ONE_OF_EACH, ids=lambda p: f"profile {p.profile}")
-def test_a_repeated_or_lost_frame_has_a_wrong_counter(protection: Protection) -> None:
-    first, second, third = frames(protection, 3)
+def test_a_repeated_frame_and_the_one_behind_a_lost_one_have_a_wrong_counter(protection: Protection) -> None:
+    first, _, third, fourth = frames(protection, 4)
     checker = Checker(protection)
-    assert checker.check(first) is Verdict.OK
-    checker.accept()
-    assert checker.check(first) is Verdict.WRONG_COUNTER
-    assert checker.check(third) is Verdict.WRONG_COUNTER
-    assert checker.check(second) is Verdict.OK
+    wanted = [(first, Verdict.OK), (first, Verdict.WRONG_COUNTER), (third, Verdict.WRONG_COUNTER), (fourth, Verdict.OK)]
+    assert [checker.check(frame) for frame, _ in wanted] == [verdict for _, verdict in wanted]
+
+
+@pytest.mark.parametrize("protection", ONE_OF_EACH, ids=lambda p: f"profile {p.profile}")
+@pytest.mark.parametrize("lost", [1, 2, 5, 9])
+def test_however_many_frames_are_lost_one_more_is_refused(protection: Protection, lost: int) -> None:
+    made = frames(protection, 20)
+    checker = Checker(protection)
+    heard = [made[0], *made[1 + lost : 16]]
+    verdicts = [checker.check(frame) for frame in heard]
+    assert verdicts == [Verdict.OK, Verdict.WRONG_COUNTER, *[Verdict.OK] * (len(heard) - 2)]
+
+
+def test_a_wrong_checksum_moves_no_counter() -> None:
+    protection = Protection(5, 8, data_id=1)
+    first, second = frames(protection, 2)
+    checker = Checker(protection)
+    broken = bytes([second[0] ^ 1]) + second[1:]
+    wanted = [(first, Verdict.OK), (broken, Verdict.WRONG_CRC), (second, Verdict.OK)]
+    assert [checker.check(frame) for frame, _ in wanted] == [verdict for _, verdict in wanted]
 
 
 def test_lost_frames_are_forgiven_up_to_the_largest_step() -> None:
@@ -116,19 +131,7 @@ def test_lost_frames_are_forgiven_up_to_the_largest_step() -> None:
     for index, verdict in ((3, Verdict.OK), (4, Verdict.WRONG_COUNTER)):
         checker = Checker(protection)
         checker.check(made[0])
-        checker.accept()
         assert checker.check(made[index]) is verdict
-
-
-def test_a_frame_that_was_checked_but_not_accepted_leaves_no_trace() -> None:
-    protection = Protection(5, 8, data_id=1)
-    first, second = frames(protection, 2)
-    checker = Checker(protection)
-    for _ in range(3):
-        assert checker.check(first) is Verdict.OK
-    checker.accept()
-    for _ in range(3):
-        assert checker.check(second) is Verdict.OK
 
 
 def test_after_a_reset_any_counter_is_good_again() -> None:
@@ -136,7 +139,6 @@ def test_after_a_reset_any_counter_is_good_again() -> None:
     made = frames(protection, 9)
     checker = Checker(protection)
     checker.check(made[0])
-    checker.accept()
     assert checker.check(made[8]) is Verdict.WRONG_COUNTER
     checker.reset()
     assert checker.check(made[8]) is Verdict.OK

@@ -25,6 +25,7 @@ class FakeSocket:
         self.send_error = self.bind_error = self.pending_error = 0
         self.options: list[tuple[int, int, int]] = []
         self.dropped = 0
+        self.stamp_ns: int | None = None
 
     def setsockopt(self, level: int, name: int, value: int) -> None:
         self.options.append((level, name, value))
@@ -42,6 +43,11 @@ class FakeSocket:
             raise OSError(answer, "recv")
         buffer[: len(answer)] = answer
         return len(answer)
+
+    def recvmsg_into(self, buffers: list[bytearray], size: int) -> tuple[int, list[tuple[int, int, bytes]], int, Any]:
+        count = self.recv_into(buffers[0])
+        stamps = [] if self.stamp_ns is None else [struct.pack("@ll", *divmod(self.stamp_ns, 10**9))]
+        return count, [(socket.SOL_SOCKET, 35, stamp) for stamp in stamps], 0, None
 
     def send(self, data: bytes) -> int:
         if self.send_error:
@@ -73,6 +79,9 @@ def kernel(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Kernel:
     made = Kernel()
     monkeypatch.setattr(socket, "socket", made)
     monkeypatch.setattr(socketcan, "_INTERFACES", tmp_path)
+    listed = tmp_path / "dev"
+    listed.write_text(" face |bytes\n  can7:       0  0\n", encoding="ascii")
+    monkeypatch.setattr(socketcan, "_LISTED", listed)
     return made
 
 
@@ -164,6 +173,31 @@ def test_a_lost_link_keeps_what_had_arrived_and_needs_a_new_socket(kernel: Kerne
     assert transport.up
     assert transport.send(Frame(1, b"")) is SendResult.SENT
     assert len(kernel.sockets[-1].sent) == 1
+
+
+def test_an_interface_that_is_not_there_is_not_bound_to(kernel: Kernel, tmp_path: Path) -> None:
+    """For the kernel would look for a module of its name, which takes root 0.1 s and more."""
+    transport, _ = opened(kernel)
+    for listed, tried in (("  can70: 0\n vcan7: 0\n", False), ("lo: 0\n can7: 0\n", True)):
+        (tmp_path / "dev").write_text(listed, encoding="ascii")
+        before = len(kernel.sockets)
+        assert transport.reopen() is tried
+        assert (len(kernel.sockets) > before) is tried
+
+
+def test_the_kernels_stamp_tells_how_long_a_frame_has_waited(kernel: Kernel, monkeypatch: pytest.MonkeyPatch) -> None:
+    transport, fake = opened(kernel)
+    assert (socket.SOL_SOCKET, 35, 1) in fake.options
+    monkeypatch.setattr(socketcan.time, "time_ns", lambda: 1_700_000_005_250_000_000)
+    for stamp_ns, waited_ns in (
+        (1_700_000_000_000_000_001, 5_249_999_999),
+        (1_700_000_005_250_000_000, 0),
+        (1_700_000_009_000_000_000, None),  # the clock was set back
+        (None, None),
+    ):
+        fake.incoming.append(raw(1, b"x"))
+        fake.stamp_ns = stamp_ns
+        assert transport.receive_late(5) == [(Frame(1, b"x"), waited_ns)]
 
 
 def test_a_bus_off_frame_is_an_error_frame_and_the_socket_stays_good(kernel: Kernel) -> None:

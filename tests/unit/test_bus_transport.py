@@ -3,6 +3,7 @@
 import logging
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -69,6 +70,21 @@ def test_no_more_frames_are_taken_than_asked_for(pair: tuple[Transport, Transpor
     assert receiver.receive(3) == sent[:3]
     assert receiver.receive(3) == sent[3:]
     assert receiver.receive(3) == []
+
+
+@pytest.mark.parametrize(("age_s", "known"), [(0.0, True), (5.0, True), (-5.0, False), (1.7e9, False)])
+def test_the_drivers_stamp_tells_how_long_a_frame_has_waited_if_it_is_a_time_of_day(
+    age_s: float, known: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    transport = PythonCan(ARGUMENTS)
+    stamped = [can.Message(arbitration_id=1, data=b"x", is_extended_id=False, timestamp=time.time() - age_s)]
+    monkeypatch.setattr(transport._bus, "recv", lambda timeout: stamped.pop() if stamped else None)
+    ((frame, waited_ns),) = transport.receive_late(5)
+    assert frame == Frame(1, b"x")
+    assert (waited_ns is not None) is known
+    if waited_ns is not None:
+        assert 0 <= waited_ns / 1e9 - age_s < 1.0
+    transport.close()
 
 
 def test_error_frames_are_marked(pair: tuple[Transport, Transport]) -> None:

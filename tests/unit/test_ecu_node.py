@@ -92,6 +92,9 @@ class Wire:
         self.sent.append(frame)
         return SendResult.SENT
 
+    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
+        return [(frame, 0) for frame in self.receive(limit)]
+
     def reopen(self) -> bool:
         return True
 

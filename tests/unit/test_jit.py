@@ -1,5 +1,6 @@
 """How compiled code is kept: nothing that it was built from may change unseen, and nothing in it makes arrays."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 from numba.core.errors import TypingError
 
 import hilplant
-from hilplant.jit import ROOMS, compiled
+from hilplant.jit import ROOMS, _usable, compiled
 
 
 def test_every_room_with_compiled_functions_decides_about_the_cache() -> None:
@@ -32,3 +33,26 @@ def test_a_model_function_that_makes_an_array_is_refused() -> None:
 
     with pytest.raises(TypingError, match="empty"):
         squares(3)
+
+
+def test_a_cache_that_others_could_have_written_to_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = tmp_path / "own" / "compiled"
+    assert _usable(own)
+    assert own.stat().st_mode & 0o777 == 0o700
+    for mode in (0o770, 0o707, 0o777):
+        own.chmod(mode)
+        assert not _usable(own)
+    own.chmod(0o755)
+    assert _usable(own)
+    own.parent.chmod(0o777)  # anybody may put another folder in its place
+    assert not _usable(own)
+    own.parent.chmod(0o1777)
+    assert _usable(own)
+    real_stat = os.stat
+
+    def of_somebody_else(path: Path) -> os.stat_result:
+        found = real_stat(path)
+        return os.stat_result((*found[:4], 54321, *found[5:])) if path == own else found
+
+    monkeypatch.setattr(Path, "stat", of_somebody_else)
+    assert not _usable(own)

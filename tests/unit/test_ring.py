@@ -1,10 +1,12 @@
 """The ring loses nothing that fits, counts what does not, and outlives whoever is killed."""
 
+import errno
 import os
 import select
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,13 +14,16 @@ import numpy as np
 import pytest
 
 from hilplant.bus.frame import Frame
+from hilplant.failure import Failure
 from hilplant.runtime.ring import Ring
 
 WIDTH = 5
 
 WRITER = f"""
 import sys
+import threading
 from hilplant.bus.frame import Frame
+from hilplant.failure import Failure
 from hilplant.runtime.ring import Ring
 ring = Ring.create({WIDTH}, rows=64, frames=64)
 print(ring.name, flush=True)
@@ -215,3 +220,23 @@ def test_something_else_is_refused(tmp_path: Path) -> None:
     other.write_bytes(bytes(1000))
     with pytest.raises(ValueError, match="not a ring"):
         Ring.attach(str(other))
+
+
+def test_a_loop_that_ticks_is_healthy_and_one_that_stands_is_not(ring: Ring) -> None:
+    from hilplant.runtime.health import moves
+
+    assert not moves(ring.name, 0.1)
+    ticking = threading.Timer(0.05, lambda: write(ring, range(3)))
+    ticking.start()
+    assert moves(ring.name, 5.0)
+    ticking.join()
+    assert not moves("hilplant-ring-nothing", 0.1)
+
+
+def test_shared_memory_without_room_says_where_and_how_much(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(file: int, offset: int, size: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "posix_fallocate", full)
+    with pytest.raises(Failure, match=r"has no room for \d+ MB of shared memory \(No space left on device\)"):
+        Ring.create(WIDTH)

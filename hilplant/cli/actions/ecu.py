@@ -10,6 +10,7 @@ import typer
 
 from hilplant.bench import load_bench
 from hilplant.bus.transport import open_transport
+from hilplant.cli.voice import Voice
 from hilplant.ecu.node import EcuNode, Report, run_ecu
 from hilplant.ecu.settings import controller_settings
 from hilplant.ecu.stalk import StalkSource, TypedStalk, parse_stalk, stalk_at, stalk_words
@@ -30,7 +31,8 @@ def ecu_command(bench_name: str, seconds: float | None, stalk: str | None, chann
     interface = bench.interface if channel is None else {**bench.interface, "channel": channel}
     side = bench.ecu_side() if stalk is None else replace(bench.ecu_side(), stalk=())
     node = EcuNode(side, open_transport(interface), controller_settings(bench.ecu))
-    node.report = _printer()
+    voice = Voice()
+    node.report = _printer(voice)
     stop, clock = StopRequest(), WallClock()
     end_ns = math.inf if seconds is None else clock.now_ns() + seconds * SECOND_NS
 
@@ -42,7 +44,7 @@ def ecu_command(bench_name: str, seconds: float | None, stalk: str | None, chann
             run_ecu(node, source, clock, ended, pause_ns=round(bench.ecu.period_ms * MILLISECOND_NS))
         finally:
             node.close()
-    _print_counts(node.counts)
+    _print_counts(node.counts, voice)
 
 
 def _source(text: str | None) -> StalkSource:
@@ -58,7 +60,7 @@ def _source(text: str | None) -> StalkSource:
         if os.tcgetpgrp(descriptor) != os.getpgrp():  # in the background, reading would stop this program
             typer.echo("in the background: the stalk comes from the bus, or with --stalk", err=True)
             return _untouched
-    return TypedStalk(descriptor, typer.echo)
+    return TypedStalk(descriptor, Voice().say)
 
 
 def _untouched(elapsed_s: float) -> Stalk:
@@ -66,7 +68,7 @@ def _untouched(elapsed_s: float) -> Stalk:
     return stalk_at((), elapsed_s)
 
 
-def _printer() -> Callable[[Report], None]:
+def _printer(voice: Voice) -> Callable[[Report], None]:
     """Return what prints a line whenever the ECU changes its mind."""
     last: list[object] = [None]
 
@@ -74,7 +76,7 @@ def _printer() -> Callable[[Report], None]:
         told = (report.stalk, report.state.phase, report.relays, report.fault, report.park_known)
         if told != last[0]:
             last[0] = told
-            typer.echo(_line(report))
+            voice.say(_line(report))
 
     return tell
 
@@ -87,9 +89,9 @@ def _line(report: Report) -> str:
     return f"{report.time_s:8.3f} s  stalk {stalk}: {phase}, relays {relays}{fault}{silent}"
 
 
-def _print_counts(counts: list[int]) -> None:
+def _print_counts(counts: list[int], voice: Voice) -> None:
     """Say what the ECU refused or lost on the bus; frames of others are none of its business."""
     found = zip(STATUS, counts, strict=True)
     words = [f"{signal.name} {count}" for signal, count in found if count and signal.name != "unknown_frame"]
     if words:
-        typer.echo(f"on the bus: {', '.join(words)}")
+        voice.say(f"on the bus: {', '.join(words)}")

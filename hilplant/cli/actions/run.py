@@ -1,5 +1,6 @@
 """What `hilplant run` does: a bench on its interface, with a recorder beside it when one is asked for."""
 
+import contextlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -7,16 +8,15 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-import typer
-
 from hilplant.bench import Bench, load_bench
+from hilplant.cli.voice import Voice
 from hilplant.extras import need
 from hilplant.failure import Failure
 from hilplant.recording.rotation import Rotation
 from hilplant.runtime.loop import ROW_WIDTH, Control
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.scheduling import Privilege
-from hilplant.runtime.server import Summary, serve
+from hilplant.runtime.server import StopRequest, Summary, ended_by_signals, serve
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 #: Counts that the line before the faults has told already.
@@ -31,8 +31,8 @@ class Record(NamedTuple):
 
 
 @contextmanager
-def recording(bench: Bench, record: Record | None) -> Iterator[Ring | None]:
-    """Give the loop a ring that another process drains into files; None where nothing is to be recorded.
+def recording(bench: Bench, record: Record | None) -> Iterator[Ring]:
+    """Give the loop a ring, which another process drains into files where the run is to be recorded.
 
     Raises
     ------
@@ -40,7 +40,8 @@ def recording(bench: Bench, record: Record | None) -> Iterator[Ring | None]:
         At the end, when something of the run was not recorded.
     """
     if record is None:
-        yield None
+        with contextlib.closing(Ring.create(ROW_WIDTH)) as ring:  # for whoever wants to look
+            yield ring
         return
     need("recording")
     from hilplant.recording.recorder import start_recorder
@@ -52,7 +53,7 @@ def recording(bench: Bench, record: Record | None) -> Iterator[Ring | None]:
             yield ring
         finally:
             recorder.finish()
-            if not ring.row_written:  # nothing has started: an empty recording would be in the way of the next attempt
+            if not ring.rows_written:  # nothing has started: an empty recording would be in the way of the next attempt
                 recorder.remove()
     finally:
         ring.close()
@@ -76,16 +77,17 @@ def run_daemon(
     if inside is not None:
         bench, control = seated(bench, inside)
     summary: Summary | None = None
+    stop, voice = StopRequest(), Voice()
     try:
-        with recording(bench, record) as ring:
-            on_start = partial(_say_start, bench)
-            summary = serve(bench, seconds, ring, on_start=on_start, control=control)
+        with ended_by_signals(stop), recording(bench, record) as ring:  # signals end the run, not the recorder's work
+            on_start = partial(_say_start, bench, voice)
+            summary = serve(bench, seconds, ring, stop, on_start, control)
     except Failure as failure:
         if summary is None:
             raise
         summary.recording_complete = False  # the run itself is told all the same
-        typer.echo(str(failure), err=True)
-    _say_end(summary, record)
+        voice.say(str(failure), err=True)
+    _say_end(summary, record, voice)
     return summary
 
 
@@ -106,26 +108,28 @@ def seated(bench: Bench, inside: Inside) -> tuple[Bench, Control]:
     return replace(bench, receive=tuple(received)), seat.drive
 
 
-def _say_start(bench: Bench, privileges: list[Privilege]) -> None:
+def _say_start(bench: Bench, voice: Voice, privileges: list[Privilege]) -> None:
     interface = " ".join(str(value) for value in bench.interface.values())
     missing = [f"  without {p.name}: {p.mend}" for p in privileges if not p.granted]
     step_ms = bench.step_ns / MILLISECOND_NS
-    typer.echo(f"{bench.name} serves on {interface}, a tick every {step_ms:g} ms; Ctrl-C ends it")
+    voice.say(f"{bench.name} serves on {interface}, a tick every {step_ms:g} ms; Ctrl-C ends it")
     for line in missing:
-        typer.echo(line, err=True)
+        voice.say(line, err=True)
     if missing:
-        typer.echo("  punctuality is not what it could be: hilplant doctor says more", err=True)
+        voice.say("  punctuality is not what it could be: hilplant doctor says more", err=True)
 
 
-def _say_end(summary: Summary, record: Record | None) -> None:
-    typer.echo(
+def _say_end(summary: Summary, record: Record | None, voice: Voice) -> None:
+    voice.say(
         f"{summary.ticks} ticks, {summary.overruns} overruns, late by p50 {summary.latency_p50_us:g} us, "
         f"p99 {summary.latency_p99_us:g} us, at most {summary.latency_max_us:.0f} us"
     )
     faults = {name: count for name, count in summary.counts.items() if count and name not in _NO_FAULTS}
     if faults:
-        typer.echo("faults: " + ", ".join(f"{name} {count}" for name, count in faults.items()))
+        voice.say("faults: " + ", ".join(f"{name} {count}" for name, count in faults.items()))
     if record is not None and summary.recording_complete:
-        typer.echo(f"recorded to {record.path}" + (", in parts" if record.rotation.in_parts else ""))
+        voice.say(f"recorded to {record.path}" + (", in parts" if record.rotation.in_parts else ""))
     if summary.stopped_by_overrun:
-        typer.echo("stopped: a tick came late and the bench says on_overrun: stop", err=True)
+        voice.say("stopped: a tick came late and the bench says on_overrun: stop", err=True)
+    if summary.fell_behind:
+        voice.say("behind: more of a second was lost than lost_time of the bench's loop allows", err=True)
