@@ -5,10 +5,10 @@ import errno
 import os
 import socket
 import struct
-import time
 from pathlib import Path
 from typing import Any
 
+from hilplant.bus.arrival import waited_ns
 from hilplant.bus.frame import Frame
 from hilplant.bus.interface import SendResult, TransportError
 from hilplant.units import SECOND_NS
@@ -207,12 +207,11 @@ def _connect(channel: str) -> socket.socket:
 
 
 def _waited_ns(ancillary: list[tuple[int, int, bytes]]) -> int | None:
-    """Return how long ago the kernel took a frame in, by its stamp [ns]; None when the clock was set back since."""
+    """Return how long ago the kernel took a frame in, by its stamp [ns]."""
     for level, kind, data in ancillary:
         if (level, kind) == (socket.SOL_SOCKET, _SO_TIMESTAMPNS) and len(data) == _TIMESPEC.size:
             seconds, nanoseconds = _TIMESPEC.unpack(data)
-            waited_ns: int = time.time_ns() - seconds * SECOND_NS - nanoseconds
-            return waited_ns if waited_ns >= 0 else None
+            return waited_ns(seconds * SECOND_NS + nanoseconds)
     return None
 
 

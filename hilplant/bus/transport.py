@@ -6,9 +6,9 @@ interface that python-can knows is driven through it, polled, without its thread
 
 import contextlib
 import logging
-import time
 from typing import Any
 
+from hilplant.bus.arrival import waited_ns
 from hilplant.bus.frame import Frame
 from hilplant.bus.interface import SendResult, Transport, TransportError
 from hilplant.bus.lean_import import without_asammdf
@@ -17,9 +17,6 @@ from hilplant.units import SECOND_NS
 
 with without_asammdf():
     import can
-
-#: A frame that is said to have waited for longer has a stamp that is not of this clock.
-_PLAUSIBLE_S = 30 * 86400.0
 
 __all__ = ["PythonCan", "SendResult", "Transport", "TransportError", "open_transport", "wrong_interface"]
 
@@ -75,8 +72,8 @@ class PythonCan:
 
     def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
         """Return the frames that have arrived, with how long they have waited, by the driver's stamps."""
-        now_s = time.time()
-        return [(frame_of(message), _waited_ns(now_s - message.timestamp)) for message in self._messages(limit)]
+        messages = self._messages(limit)
+        return [(frame_of(message), waited_ns(round(message.timestamp * SECOND_NS))) for message in messages]
 
     def _messages(self, limit: int) -> list[can.Message]:
         messages: list[can.Message] = []
@@ -149,11 +146,6 @@ class _Said(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         self.lines.append(" ".join(record.getMessage().split()))
-
-
-def _waited_ns(waited_s: float) -> int | None:
-    """Return how long a frame has waited [ns]; None where the stamp is no time of day, or counts from elsewhere."""
-    return round(waited_s * SECOND_NS) if 0.0 <= waited_s < _PLAUSIBLE_S else None
 
 
 def _known() -> str:

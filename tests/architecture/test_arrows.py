@@ -52,6 +52,8 @@ CAN_FILES = {
 #: Of the time module. The loop's clock is one file; the others are start-up, other processes and tools.
 CLOCK_FILES = {
     "runtime/clock.py": {"monotonic_ns", "sleep"},
+    "runtime/health.py": {"monotonic", "sleep"},
+    "bus/arrival.py": {"time_ns"},
     "recording/drain.py": {"monotonic", "sleep"},
     "vcan/user_mode_linux.py": {"monotonic", "sleep"},
     "cli/display.py": {"monotonic", "sleep"},

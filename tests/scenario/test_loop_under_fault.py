@@ -7,92 +7,35 @@ dealt out at a known tick.
 import math
 import random
 import struct
-from collections import Counter, deque
+from collections import Counter
 from dataclasses import replace
 from itertools import pairwise
 
 import pytest
+from support.loop_rig import (
+    BLADES,
+    ECU_STATUS,
+    ENVIRONMENT,
+    FORCES,
+    LINKAGE,
+    MOTOR_STATUS,
+    OWN,
+    RELAY,
+    SLOW,
+    STALK_COMMAND,
+    STEP_NS,
+    SUPPLY,
+    TIMEOUT_TICKS,
+    ListedTransport,
+    Rig,
+)
 
-from hilplant.bench import load_bench
 from hilplant.bus.codec import SentMessage
 from hilplant.bus.frame import Frame
-from hilplant.bus.transport import SendResult
 from hilplant.runtime.clock import VirtualClock
-from hilplant.runtime.loop import BEHIND, SAFE, WAITING, Loop
+from hilplant.runtime.loop import SAFE, WAITING
 from hilplant.runtime.server import StopRequest, build_loop
 from hilplant.runtime.watchdog import Watchdog
-from hilplant.signals import PUBLISHED_INDEX
-
-RELAY, SUPPLY, ENVIRONMENT, BLADES, MOTOR_STATUS, LINKAGE, FORCES = 0x120, 0x121, 0x122, 0x123, 0x200, 0x202, 0x204
-BETWEEN_OTHERS = (0x110, 0x130)  # from the stalk to the ECU and back
-SLOW, OFF = Frame(RELAY, b"\x01\x00"), Frame(RELAY, b"\x00\x00")
-OWN = (0x200, 0x201, 0x202, 0x203, 0x204, 0x205, 0x210, 0x211, 0x212, 0x213, 0x214, 0x215)
-STALK_COMMAND, ECU_STATUS = 0x110, 0x130  # between ECU and driver: none of the plant's business
-STEP_NS = 1_000_000
-TIMEOUT_TICKS = 500
-
-
-class ListedTransport:
-    """An interface whose frames are lists, and which can be taken down or filled up."""
-
-    def __init__(self) -> None:
-        self.up = True
-        self.missed = 0
-        self.full = False
-        self.can_reopen = True
-        self.reopened = 0
-        self.arrived: deque[Frame] = deque()
-        self.waited_ns: deque[int | None] = deque()  # of what has arrived; 0 where nothing is left of it
-        self.sent: list[Frame] = []
-
-    def receive(self, limit: int) -> list[Frame]:
-        if not self.up:
-            return []
-        return [self.arrived.popleft() for _ in range(min(limit, len(self.arrived)))]
-
-    def send(self, frame: Frame) -> SendResult:
-        if not self.up:
-            return SendResult.DOWN
-        if self.full:
-            return SendResult.FULL
-        self.sent.append(frame)
-        return SendResult.SENT
-
-    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
-        return [(frame, self.waited_ns.popleft() if self.waited_ns else 0) for frame in self.receive(limit)]
-
-    def reopen(self) -> bool:
-        self.reopened += 1
-        self.up = self.can_reopen
-        return self.up
-
-    def close(self) -> None:
-        self.up = False
-
-
-class Rig:
-    """The default bench's loop on a listed transport, ticked by hand."""
-
-    def __init__(self) -> None:
-        self.bench = load_bench("default")
-        self.transport = ListedTransport()
-        self.loop: Loop = build_loop(self.bench, self.transport, VirtualClock())
-        self.now = 0
-
-    def tick(self, ticks: int = 1, *frames: Frame, command_every: int = 0) -> None:
-        """Tick on; `frames` come with the first tick, a slow command every so many ticks."""
-        self.transport.arrived.extend(frames)
-        for _ in range(ticks):
-            if command_every and self.now % command_every == 0:
-                self.transport.arrived.append(SLOW)
-            self.loop.tick(self.now * STEP_NS)
-            self.now += 1
-
-    def value(self, name: str) -> float:
-        return self.loop._published[PUBLISHED_INDEX[name]]
-
-    def counts(self) -> dict[str, int]:
-        return {name: count for name, count in self.loop.counts().items() if count and name != "tick"}
 
 
 @pytest.fixture
@@ -144,67 +87,6 @@ def test_a_lost_command_opens_the_relays_until_it_is_back(rig: Rig) -> None:
     assert rig.counts() == {"timeout": 1}, "one loss is one count"
     rig.tick(1, SLOW)
     assert rig.value("terminal_v") == 13.5
-
-
-@pytest.mark.parametrize("waited_ms", [[5000, 4990, 4980], [None, None, None], [100_000, 700, None]])
-def test_after_a_stall_old_commands_are_lost_ones_until_a_fresh_one_comes(
-    rig: Rig, waited_ms: list[int | None]
-) -> None:
-    """Five seconds without a tick; where the interface does not say how old a frame is, it counts as old."""
-    rig.tick(1000, command_every=50)
-    rig.now += 5000
-    rig.transport.waited_ns.extend([None if wait is None else wait * STEP_NS for wait in waited_ms])
-    rig.tick(1, SLOW, OFF, SLOW)
-    assert (rig.value("terminal_v"), rig.value("mode")) == (0.0, SAFE)
-    assert rig.counts() == {"stale_frame": 3, "timeout": 1}
-    rig.tick(200)
-    assert rig.value("terminal_v") == 0.0
-    rig.tick(1, SLOW)
-    assert rig.value("terminal_v") == 13.5
-    assert rig.counts() == {"stale_frame": 3, "timeout": 1}
-
-
-def test_after_a_stall_a_command_that_has_just_come_holds(rig: Rig) -> None:
-    rig.tick(1000, command_every=50)
-    rig.now += 5000
-    rig.transport.waited_ns.extend([4000 * STEP_NS, 30 * STEP_NS])
-    rig.tick(1, OFF, SLOW)
-    assert rig.value("terminal_v") == 13.5
-    assert rig.counts() == {"stale_frame": 1}
-
-
-def test_a_backlog_of_more_than_a_tick_takes_drives_nothing_while_it_is_worked_off(rig: Rig) -> None:
-    rig.tick(1000, command_every=50)
-    rig.now += 5000
-    rig.transport.waited_ns.extend([(5000 - place) * STEP_NS for place in range(450)])
-    rig.transport.arrived.extend([SLOW] * 450)
-    for _ in range(100):
-        rig.tick()
-        assert rig.value("terminal_v") == 0.0
-    assert rig.counts()["stale_frame"] == 450
-
-
-def test_what_waited_since_before_the_start_commands_nothing(rig: Rig) -> None:
-    rig.transport.waited_ns.append(3000 * STEP_NS)
-    rig.tick(1, SLOW)
-    assert (rig.value("terminal_v"), rig.value("mode")) == (0.0, WAITING)
-    assert rig.counts() == {"stale_frame": 1}
-
-
-@pytest.mark.parametrize(("period", "other_period", "noticed"), [(50, 50, True), (50, 20, True), (100, 50, True)])
-def test_two_senders_of_one_command_are_noticed(rig: Rig, period: int, other_period: int, noticed: bool) -> None:
-    for _ in range(2000):
-        frames = [SLOW] * (rig.now % period == 0) + [OFF] * (rig.now % other_period == 11)
-        rig.tick(1, *frames)
-    assert (rig.counts().get("alternating", 0) > 20) is noticed
-
-
-def test_one_sender_that_switches_often_is_not_taken_for_two(rig: Rig) -> None:
-    for _ in range(20):
-        rig.tick(200, *[SLOW, SLOW], command_every=50)
-        rig.tick(1, OFF)
-        rig.tick(199)
-    assert rig.counts() == {}
 
 
 FRAMES_BY_CAUSE = {
@@ -417,62 +299,6 @@ def test_the_bench_decides_what_a_late_tick_leads_to(rig: Rig, policy: str, stop
     loop.run(1000, StopRequest(), Watchdog())
     assert loop.progress.stopped_by_overrun is stops
     assert (loop.progress.ticks < 200) is stops
-
-
-class StallingClock(VirtualClock):
-    """Comes `late_ms` late at every tick that is due in the given seconds."""
-
-    def __init__(self, late_ms: float, seconds: range) -> None:
-        super().__init__()
-        self.late_ns, self.seconds = round(late_ms * 1e6), seconds
-
-    def sleep_until_ns(self, deadline_ns: int) -> None:
-        super().sleep_until_ns(deadline_ns)
-        if deadline_ns // 10**9 in self.seconds:
-            self.time_ns = max(self.time_ns, deadline_ns + self.late_ns)
-
-
-class CountingWatchdog(Watchdog):
-    period_ns = 100_000_000
-    fed = 0
-
-    def feed(self) -> None:
-        self.fed += 1
-
-
-@pytest.mark.parametrize(("late_ms", "behind"), [(1.2, True), (0.9, False)])
-def test_a_loop_that_loses_too_much_time_says_so_and_does_not_feed_the_watchdog(
-    rig: Rig, late_ms: float, behind: bool
-) -> None:
-    """A tick that is 1.2 ms late each time loses every second period, from second 1 to second 3 of 6."""
-    loop = build_loop(rig.bench, transport := ListedTransport(), StallingClock(late_ms, range(1, 4)))
-    watchdog = CountingWatchdog()
-    modes = []
-
-    def command_and_look() -> bool:
-        transport.arrived.append(SLOW)
-        modes.append(int(loop._published[PUBLISHED_INDEX["mode"]]))
-        return False
-
-    loop.run(6000, command_and_look, watchdog)
-    assert loop.lost_time.exceeded is behind
-    assert (int(BEHIND) in modes) is behind
-    assert modes[-1] != int(BEHIND), "it has caught up"
-    assert (watchdog.fed < 45) is behind
-    assert watchdog.fed > 15
-
-
-def test_single_hiccups_do_not_make_a_loop_fall_behind(rig: Rig) -> None:
-    class Hiccup(VirtualClock):
-        def sleep_until_ns(self, deadline_ns: int) -> None:
-            super().sleep_until_ns(deadline_ns)
-            if deadline_ns % 10**9 == 0:
-                self.time_ns += 150_000_000
-
-    loop = build_loop(rig.bench, ListedTransport(), Hiccup())
-    loop.run(5000, StopRequest(), Watchdog())
-    assert loop.progress.overruns >= 600
-    assert not loop.lost_time.exceeded
 
 
 def test_the_count_of_ticks_begins_again_where_its_frame_ends(rig: Rig) -> None:

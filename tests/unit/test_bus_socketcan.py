@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from hilplant.bus import socketcan
+from hilplant.bus import arrival, socketcan
 from hilplant.bus.frame import Frame
 from hilplant.bus.transport import SendResult, Transport, TransportError, open_transport
 
@@ -188,7 +188,7 @@ def test_an_interface_that_is_not_there_is_not_bound_to(kernel: Kernel, tmp_path
 def test_the_kernels_stamp_tells_how_long_a_frame_has_waited(kernel: Kernel, monkeypatch: pytest.MonkeyPatch) -> None:
     transport, fake = opened(kernel)
     assert (socket.SOL_SOCKET, 35, 1) in fake.options
-    monkeypatch.setattr(socketcan.time, "time_ns", lambda: 1_700_000_005_250_000_000)
+    monkeypatch.setattr(arrival.time, "time_ns", lambda: 1_700_000_005_250_000_000)
     for stamp_ns, waited_ns in (
         (1_700_000_000_000_000_001, 5_249_999_999),
         (1_700_000_005_250_000_000, 0),
