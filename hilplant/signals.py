@@ -110,6 +110,7 @@ class Outputs(NamedTuple):
     load_mode: Annotated[float, choice(IN_CHARGE, "which model gives the torque of the load, and why")]
     motor_mode: Annotated[float, choice(IN_CHARGE, "which model moves the motor, and why")]
     supply_current_a: Annotated[float, real("A", -2000.0, 2000.0, "current that leaves the supply")]
+    measured_current_a: Annotated[float, real("A", -2000.0, 2000.0, "armature current as its sensor shows it")]
 
 
 class Status(NamedTuple):

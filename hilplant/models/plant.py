@@ -1,6 +1,6 @@
 """The whole step of the plant. Server, offline simulation, identification and replay all call this one."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from hilplant.jit import compiled
 from hilplant.models.armature import Motion
@@ -11,7 +11,9 @@ from hilplant.models.lookup import derivative, find, value, within_turn
 from hilplant.models.motor_choice import move
 from hilplant.models.park_switch import contact_now
 from hilplant.models.records import Parameters, State
+from hilplant.models.relays import move_relays
 from hilplant.models.row import unpack, write
+from hilplant.models.sensors import read_current, stick_contact
 from hilplant.models.shaft import Train, load_torque
 from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
 from hilplant.models.torque_network import NETWORK as BY_NETWORK
@@ -37,11 +39,12 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     # 1 what is not finite stays outside
     state, inputs = admit(state, inputs)
     angle, speed = state.crank_angle_rad, state.motor_speed_rad_s / parameters.motor.gear_ratio
-    # 2 park switch
+    # 2 park switch and relays
     contact = contact_now(angle, state.park_contact, state.bounce_left, parameters.park_switch)
-    phase = next_phase(inputs, parameters.park_switch, contact, state.park_phase, angle)
-    # 3 supply, relays and park circuit
-    connection = connect(inputs, parameters, contact, phase, state)
+    contact, moved = stick_contact(contact, parameters.sensors), move_relays(inputs, state, parameters)
+    phase = next_phase(moved.inputs, parameters.park_switch, contact, state.park_phase, angle)
+    # 3 supply, wires and park circuit
+    connection = connect(moved.inputs, parameters, contact, phase, state)
     # 4 kinematics and load at this instant
     motion = Motion(state.current_a if connection.closed > 0.5 else 0.0, state.motor_speed_rad_s, 0.0)
     load_mode, tangent = PHYSICAL, NO_TANGENT
@@ -54,7 +57,8 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     load = resist_as(load_mode, tangent, crank, parameters, inputs)
     # 5 motor and load together to the next tick
     after, memory = move(motion, angle, load, train, state)
-    outputs = measured(motion, crank, load, contact.shown, state.guard, train, memory.mode)
+    seen = read_current(motion.current, state.noise, parameters.sensors)
+    outputs = measured(motion, crank, load, Seen(seen.current_a, contact.shown, state.guard, memory.mode), train)
     # 6 guard
     following = State(
         current_a=without_denormals(after.current),
@@ -66,20 +70,24 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
         park_phase=phase,
         memory=memory,
         load_mode=load_mode,
+        relay_on=moved.on,
+        relay_fast=moved.fast,
+        noise=seen.noise,
     )
     return hold_if_wrong(following, angle), outputs
 
 
+class Seen(NamedTuple):
+    """What is shown besides motion and load."""
+
+    current_a: float
+    park_contact: float
+    guard: float
+    motor_mode: float
+
+
 @compiled
-def measured(  # noqa: PLR0913, PLR0917
-    motion: Motion,
-    crank: Crank,
-    load: Resistance,
-    park_contact: float,
-    guard: float,
-    train: Train,
-    motor_mode: float,
-) -> Outputs:
+def measured(motion: Motion, crank: Crank, load: Resistance, seen: Seen, train: Train) -> Outputs:
     """Return what can be seen of the plant at this instant."""
     inputs, parameters, connection = train.inputs, train.parameters, train.connection
     tables, place = crank.tables, crank.place
@@ -93,7 +101,7 @@ def measured(  # noqa: PLR0913, PLR0917
         crank_speed_rad_s=crank.speed_rad_s,
         crank_angle_rad=crank.angle_rad,
         load_torque_n_m=load_torque(motion, load, train),
-        park_contact=park_contact,
+        park_contact=seen.park_contact,
         left_arm_rad=left_rocker + parameters.left_arm.offset_rad,
         right_arm_rad=right_rocker + parameters.right_arm.offset_rad,
         left_rocker_rad=left_rocker,
@@ -102,7 +110,7 @@ def measured(  # noqa: PLR0913, PLR0917
         right_blade_m_s=parameters.right_arm.length_m * derivative(tables, place, RIGHT_ROCKER) * crank.speed_rad_s,
         relay_on=inputs.relay_on,
         relay_fast=inputs.relay_fast,
-        guard=guard,
+        guard=seen.guard,
         terminal_53_v=connection.terminal_53_v,
         terminal_53b_v=connection.terminal_53b_v,
         terminal_53e_v=connection.terminal_53e_v,
@@ -110,7 +118,8 @@ def measured(  # noqa: PLR0913, PLR0917
         left_force_n=left_pressing(crank, parameters.load, inputs).force_n,
         right_force_n=right_pressing(crank, parameters.load, inputs).force_n,
         load_mode=train.load_mode,
-        motor_mode=motor_mode,
+        motor_mode=seen.motor_mode,
+        measured_current_a=seen.current_a,
     )
 
 

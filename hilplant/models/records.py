@@ -120,6 +120,37 @@ class Wiring(NamedTuple):
     wire_31: Wire = Wire()
 
 
+class RelayTiming(NamedTuple):
+    """How a relay follows its command; times in ticks, rounded from seconds when a bench is built."""
+
+    operate_ticks: Annotated[
+        float, quantity("ticks", "from the command to the leaving of the contact, switching on")
+    ] = 0.0
+    release_ticks: Annotated[float, quantity("ticks", "the same, switching off")] = 0.0
+    transfer_ticks: Annotated[float, quantity("ticks", "between the two contacts, touching neither")] = 0.0
+    bounce_ticks: Annotated[float, quantity("ticks", "how long the contact bounces after it was made")] = 0.0
+    stuck: Annotated[float, quantity("", "0 moves, 1 stuck where released, 2 stuck where operated")] = 0.0
+
+
+class Relays(NamedTuple):
+    """The two relays between the commands and the circuit; see :mod:`hilplant.models.relays`."""
+
+    altered: Annotated[float, flag("1 where any of the others is not as declared here")] = 0.0
+    on: RelayTiming = RelayTiming()
+    fast: RelayTiming = RelayTiming()
+
+
+class Sensors(NamedTuple):
+    """What stands between the plant and what is measured of it; see :mod:`hilplant.models.sensors`."""
+
+    altered: Annotated[float, flag("1 where any of the others is not as declared here")] = 0.0
+    current_gain: Annotated[float, quantity("", "factor on the measured current")] = 1.0
+    current_offset_a: Annotated[float, quantity("A", "added to the measured current")] = 0.0
+    current_noise_a: Annotated[float, quantity("A", "standard deviation of the measured current's noise")] = 0.0
+    current_limit_a: Annotated[float, quantity("A", "where the measured current saturates; 0: nowhere")] = 0.0
+    park_stuck: Annotated[float, quantity("", "park contact: 0 moves, 1 stuck open, 2 stuck closed")] = 0.0
+
+
 #: What stands behind the parameters of a plant without networks.
 NO_NETWORKS = np.zeros(0)
 
@@ -139,6 +170,8 @@ class Parameters(NamedTuple):
     right_arm: Arm
     motor_model: Annotated[float, quantity("", "index in motor_choice.MOTORS")] = 0.0
     wiring: Wiring = Wiring()
+    relays: Relays = Relays()
+    sensors: Sensors = Sensors()
     networks: Any = NO_NETWORKS
 
 
@@ -163,6 +196,14 @@ class MotorMemory(NamedTuple):
     mode: Annotated[float, choice(IN_CHARGE, "who moved the motor", watched=False, guarded=0.0)] = 0.0
 
 
+class RelayState(NamedTuple):
+    """Where a relay's contact is, or comes from, where it goes, and the ticks until it rests there."""
+
+    made: Annotated[float, flag("1 where it operates, 0 where it is released", watched=False)] = 0.0
+    target: Annotated[float, flag("what was commanded last", watched=False)] = 0.0
+    left: Annotated[float, quantity("ticks", "until it rests", watched=False)] = 0.0
+
+
 class State(NamedTuple):
     """Everything that the plant remembers from one tick to the next."""
 
@@ -179,6 +220,9 @@ class State(NamedTuple):
     ] = 0.0
     memory: MotorMemory = MotorMemory()
     load_mode: Annotated[float, choice(IN_CHARGE, "who gave the torque of the load", watched=False, guarded=0.0)] = 0.0
+    relay_on: RelayState = RelayState()
+    relay_fast: RelayState = RelayState()
+    noise: Annotated[float, quantity("", "where the noise of the sensors has come to", watched=False)] = 1.0
 
 
 #: Where in its packed row each element is, by its name: `load.left_blade.wear` of the parameters, `memory.brush` of

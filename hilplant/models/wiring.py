@@ -16,6 +16,8 @@ DIGITAL, MECHANICAL, DEPRESSED = 0.0, 1.0, 2.0
 
 #: Positions of the mutually controlled switches 1, 2 and 3.
 OFF, SLOW, FAST = 0.0, 1.0, 2.0
+#: Where they are while their contacts touch neither end: `inputs` then has a number below 0, see `relays.py`.
+MIDWAY = -1.0
 
 #: Positions of the mutually controlled park contacts A and B of the depressed circuit: `State.park_phase`.
 WIPING, TURNING_BACK, PARKED = 0.0, 1.0, 2.0
@@ -47,8 +49,12 @@ class Leads(NamedTuple):
 @compiled
 def switch_position(inputs: Inputs) -> float:
     """Return the position of switches 1, 2 and 3: OFF whenever the ON/OFF relay is, else as FAST/SLOW says."""
+    if inputs.relay_on < 0.0:
+        return MIDWAY
     if inputs.relay_on <= 0.5:
         return OFF
+    if inputs.relay_fast < 0.0:
+        return MIDWAY
     return FAST if inputs.relay_fast > 0.5 else SLOW
 
 
@@ -60,6 +66,8 @@ def digital(inputs: Inputs) -> Leads:
     So off is a short circuit through the armature, which brakes.
     """
     on_off = SUPPLY if inputs.relay_on > 0.5 else GROUND
+    if inputs.relay_on < 0.0 or inputs.relay_fast < 0.0:
+        return Leads(NOTHING, NOTHING, GROUND, NOTHING, 0.0)
     if inputs.relay_fast > 0.5:
         return Leads(NOTHING, on_off, GROUND, NOTHING, 0.0)
     return Leads(on_off, NOTHING, GROUND, NOTHING, 0.0)
@@ -108,4 +116,4 @@ def depressed(inputs: Inputs, contact: Contact, park_phase: float) -> Leads:
     # switches 1 and 3: when off, contact B to the slow brush and contact A to the common one; else battery to it
     if position == OFF:
         return Leads(contact_b, fast, contact_a, contact_b, 1.0)
-    return Leads(slow, fast, SUPPLY, contact_b, 0.0)
+    return Leads(slow, fast, NOTHING if position == MIDWAY else SUPPLY, contact_b, 0.0)
