@@ -20,6 +20,10 @@ BackEfficiency = Annotated[float, Field(ge=0, le=1)]
 FARTHEST_M = 10.0
 
 
+#: Keys of a linkage that only an assembly has.
+_OF_ASSEMBLIES = ("bodies", "joints", "crank", "left_rocker", "right_rocker")
+
+
 class Referred:
     """Marks a part that stands in a file of its own: its name is written, or the part itself."""
 
@@ -170,7 +174,14 @@ class LinkageFile(Sourced, PointsSection):
     `bodies`, `joints` and the names of three of the bodies describe an assembly; the other kinds know theirs.
     """
 
-    model_config = ConfigDict(title="hilplant linkage")
+    model_config = ConfigDict(
+        title="hilplant linkage",
+        json_schema_extra={
+            "if": {"properties": {"kind": {"const": "assembly"}}},
+            "then": {"required": ["bodies", "joints"]},
+            "else": {"properties": dict.fromkeys(_OF_ASSEMBLIES, False)},
+        },
+    )
 
     kind: Literal["slave_driven", "master_driven", "centre_driven", "assembly"] = Field(description="which linkage")
     bodies: dict[str, list[str]] | None = Field(default=None, description="assembly: names of the points on each body")
@@ -201,7 +212,7 @@ class LinkageFile(Sourced, PointsSection):
         for key in ("bodies", "joints"):
             if self.kind == "assembly" and getattr(self, key) is None:
                 raise wrong("kind", text=f"an assembly needs {key}; see docs/bench.md")
-        for key in ("bodies", "joints", "crank", "left_rocker", "right_rocker"):
+        for key in _OF_ASSEMBLIES:
             if self.kind != "assembly" and key in self.model_fields_set:
                 raise wrong(key, text=f"{key} is for the kind assembly; {self.kind} knows its own")
         return self

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, WithJsonSchema
 
 from hilplant import resources
 from hilplant.bench.description import InitialSection
@@ -20,6 +20,7 @@ from hilplant.declaration import Signal
 from hilplant.ecu.stalk import Turn
 from hilplant.failure import Failure
 from hilplant.signals import INPUT_INDEX, INPUTS
+from hilplant.simulation.scenario_schema import EntriesOfInputs
 from hilplant.simulation.scenario_sections import read_expectations, read_stalk
 from hilplant.units import SECOND_NS
 from hilplant.verdicts.binding import Placed
@@ -30,16 +31,22 @@ _SAME = "same"
 _Pair = Annotated[list[Any], Field(min_length=2, max_length=2)]
 
 
-class _ScenarioFile(Checked):
-    seconds: Positive
-    title: str = ""
-    requirement: str = ""
-    bench: Annotated[str | None, Field(min_length=1)] = None
-    initial: Annotated[dict[str, Any], Field(default_factory=dict)]
-    signals: Annotated[dict[str, list[_Pair]], Field(default_factory=dict)]
-    stalk: Annotated[list[_Pair], Field(default_factory=list)]
-    marks: Annotated[dict[str, NotNegative], Field(default_factory=dict)]
-    expect: Annotated[list[dict[str, Any]], Field(default_factory=list)]
+class ScenarioFile(Checked):
+    """What drives the plant over time, and what is expected of it."""
+
+    seconds: Positive = Field(description="length of the run", json_schema_extra={"x-unit": "s"})
+    title: str = Field(default="", description="what the scenario is about")
+    requirement: str = Field(default="", description="identifier of what it shows")
+    bench: Annotated[str | None, Field(min_length=1)] = Field(default=None, description="bench it is meant for")
+    initial: Annotated[dict[str, Any], WithJsonSchema(InitialSection.model_json_schema())] = Field(
+        default={}, description="state at tick 0 where it differs from the bench's"
+    )
+    signals: Annotated[dict[str, list[_Pair]], EntriesOfInputs()] = Field(
+        default={}, description="inputs of the plant: pairs of time [s] and value, which holds until the next"
+    )
+    stalk: list[_Pair] = Field(default=[], description="movements of the stalk: pairs of time [s] and movement")
+    marks: dict[str, NotNegative] = Field(default={}, description="times [s] with names")
+    expect: list[dict[str, Any]] = Field(default=[], description="what is expected of the run")
 
 
 class _Ramp(Checked):
@@ -113,7 +120,7 @@ def load_scenario(name: str | Path) -> Scenario:
     document = reading.named_file(path)
     if document.problems or not reading.sources:
         reading.raise_problems()
-    top = reading.take(document, (), _ScenarioFile)
+    top = reading.take(document, (), ScenarioFile)
     initial = reading.check(document, ("initial",), _group_at(document, "initial"), InitialSection)
     entries = _entries(reading, document)
     stalk, expect = read_stalk(reading, document), read_expectations(reading, document)

@@ -1,0 +1,32 @@
+"""`hilplant schema`."""
+
+from enum import Enum
+from typing import Annotated
+
+import typer
+
+from hilplant.cli.groups import command_app
+
+app = command_app()
+
+
+class Kind(str, Enum):
+    """Kinds of files that have a schema."""
+
+    BENCH = "bench"
+    MOTOR = "motor"
+    LINKAGE = "linkage"
+    SCREEN = "screen"
+    SCENARIO = "scenario"
+    ECU = "ecu"
+
+
+@app.command(epilog="Example: hilplant schema bench > bench-1.json")
+def schema(kind: Annotated[Kind, typer.Argument(help="kind of file; ecu is that section of a bench")]) -> None:
+    """Print the JSON Schema of a kind of file.
+
+    For editors, and for checks without hilplant; docs/bench.md says how to set an editor up.
+    """
+    from hilplant.simulation.schema import schema_text
+
+    typer.echo(schema_text(kind.value), nl=False)
