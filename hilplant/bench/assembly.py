@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from hilplant.bench.bus import build_bus
 from hilplant.bench.description import BenchDescription, LoopSettings
+from hilplant.bench.doubts import note_doubts
 from hilplant.bench.ecu_description import EcuSettings
 from hilplant.bench.ecu_messages import EcuMessages, build_ecu_messages
 from hilplant.bench.ecu_side import EcuSide, build_ecu_side
@@ -107,8 +108,8 @@ def load_bench(source: BenchSource = "default") -> Bench:
 
 
 def check_bench(source: BenchSource = "default") -> list[Problem]:
-    """Return all that is wrong with a bench, sorted by file and line; of a sound one, what is doubtful."""
-    return list(_attempt(source)[1])
+    """Return all that is wrong with a bench, sorted by file and line; what is doubtful is in `Bench.warnings`."""
+    return [problem for problem in _attempt(source)[1] if problem.severity == "error"]
 
 
 def initial_state(parameters: Parameters, initial: Mapping[str, Any]) -> NDArray[np.float64]:
@@ -136,6 +137,8 @@ def _built(source: Source, description: BenchDescription | None) -> tuple[Bench 
     bench, spot = None, Spot()
     if description is not None:
         bench = build_bench(spot, description, source.path)
+        if bench is not None and not spot.findings and not source.reading.problems:
+            note_doubts(spot, description, bench.plant)
         source.reading.keep(source.document, spot.findings)
     problems = source.reading.sorted_problems()
     if bench is None or any(problem.severity == "error" for problem in problems):

@@ -6,13 +6,13 @@ from pydantic import BeforeValidator, ConfigDict, Field, GetJsonSchemaHandler, m
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
+from hilplant.bench.durations import Milliseconds
 from hilplant.bench.signal_names import EcuStatusName, InputName, InputValues, PublishedName, StalkName
 from hilplant.checked_yaml.checked import (
     Checked,
     Container,
     MayBeHole,
     Name,
-    NotNegative,
     Real,
     shown_value,
     wrong,
@@ -157,7 +157,7 @@ class ReceivedEntry(Checked):
     holes_inside: ClassVar[bool] = True
 
     signals: dict[str, tuple[SignalEntry, ...]]
-    timeout_ms: NotNegative | None = Field(
+    timeout_ms: Milliseconds | None = Field(
         default=None, description="after how long without it its message counts as lost; 0: it may stay away"
     )
     protection: ProtectionSection | None = Field(default=None, description="end-to-end protection of the message")
@@ -169,8 +169,8 @@ class SentEntry(Checked):
     holes_inside: ClassVar[bool] = True
 
     signals: dict[str, tuple[SignalEntry, ...]]
-    period_ms: NotNegative | None = Field(default=None, description="how often it is sent; 0: on change only")
-    offset_ms: NotNegative = Field(default=0.0, description="by how much its period begins later than tick 0")
+    period_ms: Milliseconds | None = Field(default=None, description="how often it is sent; 0: on change only")
+    offset_ms: Milliseconds = Field(default=0.0, description="by how much its period begins later than tick 0")
     on_change: list[str] = Field(default=[], description="signals whose change sends it in the same tick")
     protection: ProtectionSection | None = Field(default=None, description="end-to-end protection of the message")
 

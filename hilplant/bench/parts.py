@@ -25,7 +25,13 @@ _OF_ASSEMBLIES = ("bodies", "joints", "crank", "left_rocker", "right_rocker")
 
 
 class Referred:
-    """Marks a part that stands in a file of its own: its name is written, or the part itself."""
+    """Marks a part that stands in a file of its own: its name is written, or the part itself.
+
+    What a command has trained is always a file for the schema.
+    """
+
+    def __init__(self, *, trained: bool = False) -> None:
+        self._trained = trained
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         """Say what is wrong with a name that no file stands for."""
@@ -35,7 +41,7 @@ class Referred:
         """Return what the schema says."""
         part = handler(core)
         name = {"type": "string", "minLength": 1, "description": "name of the file"}
-        return {"anyOf": [name, *part.get("anyOf", [part])]}
+        return name if self._trained else {"anyOf": [name, *part.get("anyOf", [part])]}
 
 
 def _a_part(written: Any) -> Any:

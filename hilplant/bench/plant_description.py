@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, WithJsonSchema, field_validator, model_validator
 
+from hilplant.bench.durations import Milliseconds
 from hilplant.bench.load_files import PolynomialFile, TorqueFile
 from hilplant.bench.motor_network_file import MotorNetworkFile
 from hilplant.bench.parts import LinkageFile, MotorFile, Referred, WithAssumptions
@@ -26,7 +27,7 @@ class NarxMotor(Checked):
     """A network with feedback, section 6.4.3; the physical model stands by."""
 
     model: Literal["narx"] = Field(description="name of the model")
-    file: Annotated[MotorNetworkFile, Referred()] = Field(description="file from hilplant train motor")
+    file: Annotated[MotorNetworkFile, Referred(trained=True)] = Field(description="file from hilplant train motor")
 
 
 class NoLoad(Checked):
@@ -41,7 +42,7 @@ class PolynomialLoad(Checked):
     model: Literal["polynomial"] = Field(description="name of the model")
     c1: NotNegative | None = Field(default=None, description="first constant of (6.3)")
     c2: NotNegative | None = Field(default=None, description="second constant of (6.3)")
-    file: Annotated[PolynomialFile | None, Referred()] = Field(
+    file: Annotated[PolynomialFile | None, Referred(trained=True)] = Field(
         default=None, description="file from hilplant train polynomial, instead of c1 and c2"
     )
 
@@ -73,7 +74,7 @@ class NetworkLoad(WholeWiper):
     """A network trained for the whole wiper, and the reduced load where the network was not trained."""
 
     model: Literal["network"] = Field(description="name of the model")
-    file: Annotated[TorqueFile, Referred()] = Field(description="file from hilplant train torque")
+    file: Annotated[TorqueFile, Referred(trained=True)] = Field(description="file from hilplant train torque")
 
 
 AnyLoad = NoLoad | PolynomialLoad | ReducedLoad | NetworkLoad
@@ -133,7 +134,7 @@ class ParkSwitchSection(WithAssumptions):
     hysteresis_deg: NotNegative = Field(
         default=0.0, description="how much farther the crank turns until the contact opens"
     )
-    bounce_ms: NotNegative = Field(default=0.0, description="for how long the contact bounces after each edge")
+    bounce_ms: Milliseconds = Field(default=0.0, description="for how long the contact bounces after each edge")
     circuit: Literal["digital", "mechanical", "depressed"] = Field(
         default="digital",
         description="digital: the contact reports; mechanical, depressed: it carries the motor's current",

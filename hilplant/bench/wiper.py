@@ -17,6 +17,7 @@ from hilplant.mechanics.assembly import assembly
 from hilplant.mechanics.blades import blade_tips
 from hilplant.mechanics.centre_driven import centre_driven
 from hilplant.mechanics.coefficients import Aerodynamics, CoefficientError
+from hilplant.mechanics.design_points import tilt_of
 from hilplant.mechanics.linkage import Linkage
 from hilplant.mechanics.masses import linkage_masses
 from hilplant.mechanics.master_driven import master_driven
@@ -26,10 +27,13 @@ from hilplant.mechanics.tables import run_time_table
 from hilplant.mechanics.transmission import Closeness, check_transmission
 from hilplant.mechanics.wiper import SideParts, Wiper, WiperParts, assemble
 from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
+from hilplant.units import RAD_PER_DEG
 
 Built = TypeVar("Built")
 
 SIDES = ("left", "right")
+#: Beyond this tilt a link would lose more than 0.1 % of its length [rad].
+MOST_TILT_RAD = 0.045
 MAKERS = {"slave_driven": slave_driven, "master_driven": master_driven, "centre_driven": centre_driven}
 
 
@@ -64,7 +68,7 @@ class Mechanics:
 def build_mechanics(plant: Spot, written: LinkageFile, around: Surroundings) -> Mechanics | None:
     """Build the wiper of a plant; all that is wrong with it is noted."""
     spot = plant.inner("linkage")
-    parts = _parts(spot, written, around)
+    parts = None if _is_tilted(spot, written) else _parts(spot, written, around)
     if parts is None:
         return None
     try:
@@ -77,6 +81,17 @@ def build_mechanics(plant: Spot, written: LinkageFile, around: Surroundings) -> 
         return None
     clearance = _attempt(spot.inner("least_clearance_m"), lambda: _clearance(written, parts, table))
     return Mechanics(written, parts.linkage, wiper, table, closest, clearance) if clearance is not None else None
+
+
+def _is_tilted(spot: Spot, written: LinkageFile) -> bool:
+    """Note points that lie in another plane than XY: along Z they would be another, smaller wiper."""
+    parts = (written, written.left_arm, written.right_arm, written.left_blade, written.right_blade)
+    tilt_rad = tilt_of(part.points_m for part in parts)
+    if tilt_rad <= MOST_TILT_RAD:
+        return False
+    text = f"the points lie in a plane that is tilted by {tilt_rad / RAD_PER_DEG:.1f} deg against X and Y, as in the "
+    spot.note("points_m", text=f"{text}vehicle's axes; turn them into the screen's plane, and give its angle_rad")
+    return True
 
 
 class _ByContent:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from cantools.database.can import Database
 
 _FORMATS = ("dbc", "arxml", "kcd", "sym")
+#: What a parser says, up to where it quotes the file.
+_WITHOUT_CONTENT = re.compile(r"(\bat line \d+, column \d+):.*")
 
 
 class DatabaseError(Failure):
@@ -44,7 +47,7 @@ def load_database(path: str | Path) -> Database:
     except OSError as error:
         raise DatabaseError(f"{path} cannot be read: {error.strerror}") from error
     except Exception as error:  # cantools' parsers let errors of every kind through
-        reason = " ".join(str(error).split()) or type(error).__name__
+        reason = _WITHOUT_CONTENT.sub(r"\1", " ".join(str(error).split())) or type(error).__name__
         raise DatabaseError(f"{path} cannot be read as a bus database: {reason}") from error
     if not isinstance(database, Database):
         raise DatabaseError(f"{path} holds diagnostics, not messages")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -107,6 +108,9 @@ def _database_signal(message: Message, name: str) -> DatabaseSignal:
 
 def _check_database(database: DatabaseSignal) -> None:
     """Refuse a signal that the database describes in a way that no value can pass through."""
+    stated = (database.scale, database.offset, database.minimum or 0.0, database.maximum or 0.0)
+    if not all(math.isfinite(number) for number in stated):
+        raise ValueError("its factor, offset or range in the database is beyond every number")
     if database.scale == 0:
         raise ValueError("its factor in the database is 0, so it cannot carry a value")
     if database.is_float and letter(database) is None:

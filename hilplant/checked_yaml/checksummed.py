@@ -21,7 +21,7 @@ def flaw(text: str, wanted: str) -> str:
     lines = text.splitlines()
     first = lines[0] if lines else ""
     if first != f"format: {wanted}":
-        found = f"it begins with '{first[:60]}'" if first else "it is empty"
+        found = "its first line is another" if first else "it is empty"
         return f"is not a file of '{wanted}': {found}"
     if not lines[-1].startswith(_LAST):
         return "is cut off: its last line is not content_hash; train it again"

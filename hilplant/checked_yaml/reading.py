@@ -123,6 +123,9 @@ class Reading:
 
     def _document(self, text: str, path: Path) -> Document:
         document = read_text(text, shown(path))
+        if document.data is not None and not isinstance(document.data, dict):  # its content is nobody's business
+            document.data = None
+            document.problems.append(Problem(document.file, 1, "must be a group of keys, such as `name: ...`"))
         self.problems.extend(document.problems)
         return document
 

@@ -16,6 +16,11 @@ from hilplant.checked_yaml.problems import Problem, Severity
 #: Where a value stands in the data: the keys and indices that lead to it.
 Location = tuple[str | int, ...]
 
+#: So many values a file may have, aliases followed; nobody writes more, and aliases of aliases make billions.
+MOST_VALUES = 100_000
+#: A whole number of more characters is beyond every float.
+_LONGEST_INTEGER = 250
+
 _STANDARD_TAGS = frozenset(f"tag:yaml.org,2002:{kind}" for kind in ("str", "seq", "map"))
 _WORDS = {"": None, "~": None} | {
     spelling: value
@@ -90,6 +95,9 @@ def read_text(text: str, file: str) -> Document:
     except yaml.YAMLError as error:
         document.data = None
         document.problems = [Problem(file, _line_of(error), _reason(error))]
+    except _TooManyValuesError:
+        text = f"it has more than {MOST_VALUES} values once its aliases are followed; write them out, or fewer"
+        return Document(file, problems=[Problem(file, 1, text)])
     except RecursionError:
         document.data = None
         document.problems = [Problem(file, 1, "an alias contains itself, or the file is nested too deeply")]
@@ -101,6 +109,8 @@ def scalar(text: str) -> Any:
     if text in _WORDS:
         return _WORDS[text]
     if _INTEGER.fullmatch(text):
+        if len(text) > _LONGEST_INTEGER:
+            return float("-inf" if text.startswith("-") else "inf")
         return int(text, {"0o": 8, "0x": 16}.get(text[:2], 10))
     if _REAL.fullmatch(text):
         return float(text)
@@ -109,7 +119,13 @@ def scalar(text: str) -> Any:
     return float("nan") if text in (".nan", ".NaN", ".NAN") else text
 
 
+class _TooManyValuesError(Exception):
+    """The file has more values than anybody writes."""
+
+
 def _value(node: yaml.Node, location: Location, document: Document) -> Any:
+    if len(document.places) > MOST_VALUES:
+        raise _TooManyValuesError
     document.places.setdefault(location, (document.file, node.start_mark.line + 1))
     if node.tag not in _STANDARD_TAGS:
         text = f"the tag {node.tag} is not known here; leave it out"

@@ -4,8 +4,16 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hilplant.failure import Failure
 from hilplant.mechanics.planar import Point
+
+#: A plane is not told by points on a line, whose second extent is below this share of the first.
+_LEAST_WIDTH = 0.02
+#: Of a tilted plane the thickness is below this share of how far the tilt takes its width out of XY.
+_THICKNESS = 0.3
 
 
 class GeometryError(Failure):
@@ -68,6 +76,31 @@ def projection_loss(
         body: max((_lost(spatial[first], spatial[second]) for first, second in combinations(names, 2)), default=0.0)
         for body, names in body_points.items()
     }
+
+
+def tilt_of(groups: Iterable[Mapping[str, Sequence[float]]]) -> float:
+    """Return the angle [rad] between Z and the normal of the plane in which the points lie; 0 where they lie in none.
+
+    Each group has an origin of its own, and all have the same axes. Links in layers along Z are no tilt: the plane that
+    fits best must be clearly more tilted than it is thick.
+
+    Parameters
+    ----------
+    groups
+        Points by name, as for :func:`plane_points`, already checked.
+
+    """
+    centred = [_centred([(*point, 0.0)[:3] for point in group.values()]) for group in groups if group]
+    _, sizes, axes = np.linalg.svd(np.concatenate(centred), full_matrices=False)
+    if len(sizes) < 3 or sizes[1] <= _LEAST_WIDTH * sizes[0]:
+        return 0.0
+    tilt = math.acos(min(1.0, abs(float(axes[2, 2]))))
+    return tilt if sizes[2] < _THICKNESS * math.sin(tilt) * sizes[1] else 0.0
+
+
+def _centred(points: Sequence[Sequence[float]]) -> NDArray[np.float64]:
+    rows = np.array(points, dtype=np.float64)
+    return np.asarray(rows - rows.mean(axis=0))
 
 
 def _lost(first: Sequence[float], second: Sequence[float]) -> float:

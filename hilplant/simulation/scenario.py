@@ -11,8 +11,9 @@ from pydantic import Field, WithJsonSchema
 
 from hilplant import resources
 from hilplant.bench.description import InitialSection
+from hilplant.bench.durations import Seconds, SomeSeconds
 from hilplant.bench.values import signal_value
-from hilplant.checked_yaml.checked import Checked, NotNegative, Positive
+from hilplant.checked_yaml.checked import Checked
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.checked_yaml.reading import Reading
 from hilplant.checked_yaml.yaml_reader import Document, Location
@@ -34,7 +35,7 @@ _Pair = Annotated[list[Any], Field(min_length=2, max_length=2)]
 class ScenarioFile(Checked):
     """What drives the plant over time, and what is expected of it."""
 
-    seconds: Positive = Field(description="length of the run", json_schema_extra={"x-unit": "s"})
+    seconds: SomeSeconds = Field(description="length of the run", json_schema_extra={"x-unit": "s"})
     title: str = Field(default="", description="what the scenario is about")
     requirement: str = Field(default="", description="identifier of what it shows")
     bench: Annotated[str | None, Field(min_length=1)] = Field(default=None, description="bench it is meant for")
@@ -45,17 +46,17 @@ class ScenarioFile(Checked):
         default={}, description="inputs of the plant: pairs of time [s] and value, which holds until the next"
     )
     stalk: list[_Pair] = Field(default=[], description="movements of the stalk: pairs of time [s] and movement")
-    marks: dict[str, NotNegative] = Field(default={}, description="times [s] with names")
+    marks: dict[str, Seconds] = Field(default={}, description="times [s] with names")
     expect: list[dict[str, Any]] = Field(default=[], description="what is expected of the run")
 
 
 class _Ramp(Checked):
     ramp_to: Any
-    seconds: Positive
+    seconds: SomeSeconds
 
 
 class _Instant(Checked):
-    time: NotNegative
+    time: Seconds
 
 
 @dataclass(frozen=True, slots=True)

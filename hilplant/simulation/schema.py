@@ -3,9 +3,10 @@
 import json
 
 from hilplant.bench import schema as bench_schema
+from hilplant.checked_yaml.checked import Checked
 from hilplant.simulation.scenario import ScenarioFile
 
-KINDS = {**bench_schema.KINDS, "scenario": (ScenarioFile, 1)}
+KINDS: dict[str, tuple[type[Checked], int]] = {**bench_schema.KINDS, "scenario": (ScenarioFile, 1)}
 
 
 def file_name(kind: str) -> str:

@@ -12,12 +12,13 @@ app = command_app()
 def check(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
     """Say all that is wrong with a bench, with file and line.
 
-    When nothing is, say what the bench amounts to. Exit code 0 when nothing is wrong, else 1.
+    When nothing is, say what the bench amounts to, and warn of what is doubtful.
+    Exit code 0 when nothing is wrong, warnings or not, else 1.
     """
     from hilplant.bench.verdict import verdict_on
 
     found = verdict_on(bench)
-    for problem in found.problems:
+    for problem in (*found.problems, *found.warnings):
         typer.echo(problem, err=True)
     typer.echo("\n".join(found.lines))
     write_json(json_file, found.figures)

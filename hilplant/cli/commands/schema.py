@@ -1,6 +1,6 @@
 """`hilplant schema`."""
 
-from enum import Enum
+from enum import StrEnum
 from typing import Annotated
 
 import typer
@@ -10,7 +10,7 @@ from hilplant.cli.groups import command_app
 app = command_app()
 
 
-class Kind(str, Enum):
+class Kind(StrEnum):
     """Kinds of files that have a schema."""
 
     BENCH = "bench"

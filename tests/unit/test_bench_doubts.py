@@ -1,0 +1,87 @@
+"""What is doubtful about a bench is a warning: it is shown and counted, and the bench runs all the same."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from hilplant.bench import check_bench, load_bench
+from hilplant.resources import shipped
+from hilplant.signals import INPUT_INDEX
+
+HEAD = "extends: default.yaml\nname: x\n"
+MOTOR = shipped("config", "motors", "table_5_9.yaml").read_text()
+LINKAGE = shipped("config", "linkages", "rhd_slave_driven.yaml").read_text()
+
+
+def warnings(text: str) -> list[str]:
+    assert check_bench(HEAD + text) == []
+    return [f"{Path(warning.file).name}:{warning.line}: {warning.text}" for warning in load_bench(HEAD + text).warnings]
+
+
+@pytest.mark.parametrize(
+    ("safe", "values"),
+    [
+        ("{}", {"relay_on": 0.0, "relay_fast": 0.0}),
+        ("{supply_v: 12}", {"relay_on": 0.0, "relay_fast": 0.0, "supply_v": 12.0}),
+        ("{relay_fast: false}", {"relay_on": 0.0, "relay_fast": 0.0}),
+        ("{relay_fast: true}", {"relay_on": 0.0, "relay_fast": 1.0}),
+        ("{screen: wet, relay_on: false}", {"relay_on": 0.0, "relay_fast": 0.0, "screen": 1.0}),
+    ],
+)
+def test_relays_open_while_commands_are_lost_unless_they_are_named(safe: str, values: dict[str, float]) -> None:
+    bench = load_bench(f"{HEAD}bus: {{safe: {safe}}}\n")
+    assert dict(bench.safe) == {INPUT_INDEX[name]: value for name, value in values.items()}
+    assert bench.warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("bus: {safe: {relay_on: true}}\n", "3: relay_on: true keeps the motor running while commands are lost"),
+        ("step_s: 1e-6\n", "3: step_s 1e-06 is so short"),
+        ("plant: {blades: {left: {force_n: 1e5}, right: {force_n: 7}}}\n", "3: force_n is 100000, and no arm presses"),
+        (
+            "bus: {receive: {RelayCommand: {timeout_ms: 0, signals: {RelayOn: relay_on}}}}\n",
+            "3: RelayCommand commands relay_on and may stay away for ever",
+        ),
+    ],
+)
+def test_a_doubtful_setting_is_a_warning_at_its_line(text: str, said: str) -> None:
+    (warning,) = warnings(text)
+    assert warning.startswith(f"(text):{said}")
+
+
+@pytest.mark.parametrize(
+    ("part", "keys", "value", "said"),
+    [
+        ("motor", ("slow", "resistance_ohm"), 1000.0, "resistance_ohm is 1000"),
+        ("motor", ("fast", "constant_v_s"), 64.0, "constant_v_s is 64"),
+        ("motor", ("fast", "inductance_henry"), 0.5, "is above the slow one's"),
+        ("linkage", ("masses_kg", "link"), 1e4, "kg move, and no wiper weighs more"),
+    ],
+)
+def test_a_doubtful_part_is_a_warning_in_its_own_file(
+    tmp_path: Path, part: str, keys: tuple[str, str], value: float, said: str
+) -> None:
+    data = yaml.safe_load(MOTOR if part == "motor" else LINKAGE)
+    data[keys[0]][keys[1]] = value
+    (tmp_path / "own.yaml").write_text(yaml.safe_dump(data))
+    (tmp_path / "bench.yaml").write_text(f"{HEAD}plant: {{{part}: own.yaml}}\n")
+    found = [str(warning) for warning in load_bench(tmp_path / "bench.yaml").warnings]
+    assert any("own.yaml:" in warning and said in warning for warning in found), found
+
+
+def test_check_shows_warnings_and_ends_with_0(tmp_path: Path) -> None:
+    path, figures = tmp_path / "bench.yaml", tmp_path / "found.json"
+    path.write_text(f"{HEAD}bus:\n  safe: {{relay_on: true}}\n")
+    command = [sys.executable, "-m", "hilplant", "check", str(path), "--json", str(figures)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert f"{path}:4: warning: relay_on: true" in done.stderr
+    assert "nothing is wrong, but see 1 warning(s)" in done.stdout
+    counted = json.loads(figures.read_text())
+    assert (counted["problems"], counted["warnings"]) == (0, 1)
