@@ -65,7 +65,7 @@ def test_every_shipped_parameter_set_has_source_and_status(root: Path) -> None:
 
 def test_every_folder_of_the_configuration_is_known_here(root: Path) -> None:
     folders = {path.name for path in (root / "config").iterdir() if path.is_dir()}
-    assert folders <= {*PARAMETER_SETS, *DESCRIPTIONS, TRAINED}
+    assert folders <= {*PARAMETER_SETS, *DESCRIPTIONS, TRAINED, "schemas"}
 
 
 def test_every_shipped_trained_file_is_as_its_command_has_written_it(root: Path) -> None:
