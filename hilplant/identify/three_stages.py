@@ -20,15 +20,12 @@ from hilplant.identify.parameters import Choice, search_space
 from hilplant.identify.profile import Interval, profile
 from hilplant.identify.residuals import Problem, expected_noise
 from hilplant.identify.uncertainty import Spread, Verdict, spread, verdicts
-from hilplant.identify.validation import Comparison, compare
+from hilplant.identify.validation import EXPLAINED, Comparison, compare
 from hilplant.measurements.measurement import Samples
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.progress import OnProgress, ProgressReport, unseen
 
 _TABLE_5_7 = Settings()
-
-#: Up to this many times its noise what is left of the current is explained by it.
-EXPLAINED = 1.2
 
 
 @dataclass(frozen=True, slots=True)

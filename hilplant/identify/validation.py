@@ -40,6 +40,20 @@ class Comparison(NamedTuple):
     edge_errors_s: Samples
 
 
+#: Up to this many times its noise what is left of the current is explained by it.
+EXPLAINED = 1.2
+
+
+def unexplained(compared: Sequence[Comparison]) -> list[str]:
+    """Return a line for each recording whose current the model does not explain: intervals are too narrow then."""
+    return [
+        f"{each.name}: the current's error is {each.rms_current_a / each.noise_a:.1f} times the noise: the model does "
+        "not explain it, so intervals are too narrow; try --also coulomb_torque_n_m, or look at the data"
+        for each in (comparison.error for comparison in compared)
+        if each.rms_current_a > EXPLAINED * each.noise_a > 0.0
+    ]
+
+
 def compare(runs: Sequence[Run], row: NDArray[np.float64], tables: NDArray[np.float64]) -> list[Comparison]:
     """Hold parameters against recordings; only start and offset of each are fitted."""
     return [_compared(run, row, tables) for run in runs]

@@ -117,7 +117,7 @@ def _converted(path: Path, cells: list[str | None], kind: str, layout: Layout) -
         value = plain or (moment_of(cell or "") if kind == "date" else None)
         if value is None:
             what = "a number" if kind == "number" else "a time"
-            raise Failure(f"{path}:{layout.first_row + 1 + place}: '{cell}' is not {what}")
+            raise Failure(f"{path}:{layout.first_row + 1 + place}: '{_shown(cell or '')}' is not {what}")
         values[place] = value
     days, seconds = values.T
     return seconds if kind == "number" else _since_first(days, seconds)
@@ -130,6 +130,11 @@ def _since_first(days: Samples, seconds: Samples) -> Samples:
     return np.asarray((days - days[0]) * 86400.0 + seconds - seconds[0], np.float64)
 
 
+def _shown(text: str) -> str:
+    """Return a text in one line that is not longer than a message may be."""
+    return " ".join(text.split())[:120]
+
+
 def _line(text: str) -> str:
     """Return the line that pyarrow complains of; it counts the file's lines from 1."""
     found = _ROW.search(text)
@@ -138,7 +143,7 @@ def _line(text: str) -> str:
 
 def _reason(text: str, width: int) -> str:
     if found := re.search(r"invalid value '([^']*)'", text):
-        return f"'{found[1]}' is not a number"
+        return f"'{_shown(found[1])}' is not a number"
     if found := re.search(r"Expected \d+ columns, got (\d+)", text):
         return f"has {found[1]} columns where the first row has {width}"
-    return " ".join(text.split())
+    return _shown(text)

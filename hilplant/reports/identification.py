@@ -9,7 +9,7 @@ from hilplant.atomic_write import write_text
 from hilplant.identify.result_files import Origin
 from hilplant.identify.starting_point import Known
 from hilplant.identify.three_stages import Identified
-from hilplant.identify.validation import Comparison
+from hilplant.identify.validation import Comparison, unexplained
 from hilplant.plots.identification import convergence_picture, correlation_picture, run_picture
 
 
@@ -38,6 +38,7 @@ def _content(found: Identified, known: Known, origin: Origin, notes: list[str]) 
         "rows": parameter_rows(found, known),
         "forces": found.forces,
         "untold": untold(found),
+        "unexplained": unexplained(found.fitted),
         "notes": notes,
         "times": times,
         "rate": times.evaluations_per_s,

@@ -8,7 +8,8 @@ import typer
 from hilplant.cli.progress import progress_shown
 from hilplant.identify.from_files import Request, figures, identify_files
 from hilplant.identify.starting_point import Known
-from hilplant.identify.three_stages import EXPLAINED, Identified
+from hilplant.identify.three_stages import Identified
+from hilplant.identify.validation import unexplained
 
 
 def run_identification(request: Request, report: Path | None) -> dict[str, Any]:
@@ -60,9 +61,5 @@ def _print_errors(found: Identified) -> None:
     for role, compared in (("fitted", found.fitted), ("held out", found.held_out)):
         for each in (comparison.error for comparison in compared):
             typer.echo(f"{each.name} ({role}): current {each.rms_current_a:.4g} A rms, noise {each.noise_a:.4g} A")
-    for comparison in found.fitted:
-        left = comparison.error
-        if left.rms_current_a > EXPLAINED * left.noise_a:
-            text = "the model does not explain it, so intervals are too narrow; try another --seed, or look at the data"
-            ratio = left.rms_current_a / left.noise_a
-            typer.echo(f"{left.name}: the current's error is {ratio:.1f} times the noise: {text}", err=True)
+    for line in unexplained(found.fitted):
+        typer.echo(line, err=True)

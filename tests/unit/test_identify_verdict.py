@@ -1,0 +1,19 @@
+"""A model that leaves more than the noise is said not to explain the data, with the same words wherever it is told."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from hilplant.identify.validation import unexplained
+
+
+def compared(rms_a: float, noise_a: float) -> Any:
+    return SimpleNamespace(error=SimpleNamespace(name="rig.csv", rms_current_a=rms_a, noise_a=noise_a))
+
+
+@pytest.mark.parametrize(("rms_a", "said"), [(0.1, False), (0.119, False), (0.121, True), (0.56, True)])
+def test_what_is_left_beyond_the_noise_is_told(rms_a: float, said: bool) -> None:
+    lines = unexplained([compared(0.05, 0.1), compared(rms_a, 0.1)])
+    assert bool(lines) == said
+    assert all(f"{10.0 * rms_a:.1f} times the noise" in line and "--also" in line for line in lines)
