@@ -99,7 +99,7 @@ class BrushSection(WithAssumptions):
 
     def record(self) -> Brush:
         """Return the parameters as the models take them."""
-        return Brush(self.resistance_ohm, self.inductance_henry, self.constant_v_s)
+        return Brush(**{name: getattr(self, name) for name in Brush._fields})
 
 
 class MotorFile(Sourced):

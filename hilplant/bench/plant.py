@@ -13,6 +13,7 @@ from hilplant.bench.plant_description import (
     BladeEntry,
     BladesSection,
     ParkSwitchSection,
+    PlainLoad,
     PlantSection,
     PolynomialLoad,
     WholeWiper,
@@ -59,12 +60,16 @@ def build_plant(spot: Spot, plant: PlantSection, step_ns: int) -> Plant | None:
     if trained is None:
         return None
     record = _load_record(load, trained, plant.screen, blades)
-    left, right = mechanics.wiper.left.arm, mechanics.wiper.right.arm
-    networks = row_of_networks(trained.numbers, mover.numbers)
     parameters = Parameters(
-        step_ns / SECOND_NS, motor.record(), _contact(park_switch, step_ns), record, left, right, mover.place,
-        networks=networks,
-    )  # fmt: skip
+        step_s=step_ns / SECOND_NS,
+        motor=motor.record(),
+        park_switch=_contact(park_switch, step_ns),
+        load=record,
+        left_arm=mechanics.wiper.left.arm,
+        right_arm=mechanics.wiper.right.arm,
+        motor_model=mover.place,
+        networks=row_of_networks(trained.numbers, mover.numbers),
+    )
     check_bounds(spot.inner("load"), trained, parameters, mechanics.table)
     return Plant(parameters, mechanics.table, motor, load, plant.screen, blades, mechanics, park_switch, trained.file)
 
@@ -112,9 +117,9 @@ def _load_record(load: AnyLoad, trained: TrainedLoad, screen: ScreenFile | None,
     constants = trained.file if isinstance(trained.file, PolynomialFile) else load
     left, right = (Blade(entry.force_n, entry.wear) for entry in blades) if blades is not None else (Blade(), Blade())
     return Load(
-        float(LOADS.index(load.model)),
-        c1=constants.c1 or 0.0 if isinstance(constants, PolynomialFile | PolynomialLoad) else 0.0,
-        c2=constants.c2 or 0.0 if isinstance(constants, PolynomialFile | PolynomialLoad) else 0.0,
+        model=float(LOADS.index(load.model)),
+        c1=constants.c1 or 0.0 if isinstance(constants, PolynomialFile | PolynomialLoad | PlainLoad) else 0.0,
+        c2=constants.c2 or 0.0 if isinstance(constants, PolynomialFile | PolynomialLoad | PlainLoad) else 0.0,
         points=float(load.points) if isinstance(load, WholeWiper) else 1.0,
         friction=screen.friction() if screen is not None else Friction(),
         left_blade=left,
@@ -124,10 +129,10 @@ def _load_record(load: AnyLoad, trained: TrainedLoad, screen: ScreenFile | None,
 
 def _contact(section: ParkSwitchSection, step_ns: int) -> ParkSwitch:
     return ParkSwitch(
-        section.park_angle_deg * RAD_PER_DEG,
-        0.5 * section.window_deg * RAD_PER_DEG,
-        section.hysteresis_deg * RAD_PER_DEG,
-        float(round(section.bounce_ms * MILLISECOND_NS / step_ns)),
-        float(CIRCUITS.index(section.circuit)),
-        (section.reverse_angle_deg or 0.0) * RAD_PER_DEG,
+        angle_rad=section.park_angle_deg * RAD_PER_DEG,
+        half_window_rad=0.5 * section.window_deg * RAD_PER_DEG,
+        hysteresis_rad=section.hysteresis_deg * RAD_PER_DEG,
+        bounce_ticks=float(round(section.bounce_ms * MILLISECOND_NS / step_ns)),
+        circuit=float(CIRCUITS.index(section.circuit)),
+        reverse_angle_rad=(section.reverse_angle_deg or 0.0) * RAD_PER_DEG,
     )

@@ -1,15 +1,16 @@
 """What the plant section of a bench may say."""
 
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union, cast
 
-from pydantic import Field, WithJsonSchema, field_validator, model_validator
+from pydantic import Field, WithJsonSchema, create_model, field_validator, model_validator
 
 from hilplant.bench.durations import Milliseconds
 from hilplant.bench.load_files import PolynomialFile, TorqueFile
 from hilplant.bench.motor_network_file import MotorNetworkFile
 from hilplant.bench.parts import LinkageFile, MotorFile, Referred, WithAssumptions
 from hilplant.bench.screen_parts import ScreenFile
-from hilplant.checked_yaml.checked import Checked, Container, MayBeHole, NotNegative, wrong
+from hilplant.checked_yaml.checked import Checked, Container, MayBeHole, NotNegative, Real, wrong
+from hilplant.models.load import LOADS
 
 Angle = Annotated[float, Field(gt=0, lt=360)]
 _PAIR = {"type": "array", "prefixItems": [{"type": "number"}, {"type": "number"}], "minItems": 2, "maxItems": 2}
@@ -77,7 +78,24 @@ class NetworkLoad(WholeWiper):
     file: Annotated[TorqueFile, Referred(trained=True)] = Field(description="file from hilplant train torque")
 
 
-AnyLoad = NoLoad | PolynomialLoad | ReducedLoad | NetworkLoad
+class PlainLoad(Checked):
+    """A load that takes two coefficients, whose meaning is its model's."""
+
+    model: str = Field(description="name of the model")
+    c1: Real = Field(default=0.0, description="first coefficient of the model")
+    c2: Real = Field(default=0.0, description="second coefficient of the model")
+
+
+AnyLoad = NoLoad | PolynomialLoad | ReducedLoad | NetworkLoad | PlainLoad
+#: One description for each model: its own, or else that of a plain load.
+_OWN = {"none": NoLoad, "polynomial": PolynomialLoad, "reduced": ReducedLoad, "network": NetworkLoad}
+_LOADS = tuple(
+    _OWN.get(name) or create_model(name, __base__=PlainLoad, model=(cast(Any, Literal[name]), ...)) for name in LOADS
+)
+if TYPE_CHECKING:
+    EachLoad = AnyLoad
+else:
+    EachLoad = Union[_LOADS]  # noqa: UP007
 
 
 class BladeEntry(WithAssumptions):
@@ -173,5 +191,5 @@ class PlantSection(Container):
     linkage: Annotated[LinkageFile, Referred()] = Field(description="geometry with its arms, blades and masses")
     screen: Annotated[ScreenFile | None, Referred()] = Field(default=None, description="windscreen: angle and friction")
     blades: BladesSection | None = Field(default=None, description="both blades; the reduced load needs them")
-    load: Annotated[AnyLoad, Field(discriminator="model"), MayBeHole] = Field(description="what the crank has to move")
+    load: Annotated[EachLoad, Field(discriminator="model"), MayBeHole] = Field(description="what the crank has to move")
     park_switch: ParkSwitchSection = Field(description="the park contact and its circuit")

@@ -13,8 +13,8 @@ Where one changes into the other no torque passes, and both give the same accele
 from hilplant.jit import compiled
 from hilplant.models.armature import Drive, Motion
 from hilplant.models.circuit import Connection
-from hilplant.models.load import Resistance
 from hilplant.models.records import Motor
+from hilplant.models.resistance import Resistance
 
 
 @compiled

@@ -9,7 +9,6 @@ import math
 
 from hilplant.jit import compiled
 from hilplant.models.armature import Motion
-from hilplant.models.load import Resistance
 from hilplant.models.narx import (
     FAST_BRUSH,
     NETWORK,
@@ -24,6 +23,7 @@ from hilplant.models.narx import (
     within,
 )
 from hilplant.models.records import MotorMemory, Sample, State
+from hilplant.models.resistance import Resistance
 from hilplant.models.shaft import Train, drive_at, turn
 
 #: Names of the models of the motor; ``Parameters.motor_model`` is the place in this list.

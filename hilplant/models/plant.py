@@ -6,12 +6,14 @@ from hilplant.jit import compiled
 from hilplant.models.armature import Motion
 from hilplant.models.circuit import connect, next_phase
 from hilplant.models.guard import admit, hold_if_wrong
-from hilplant.models.load import NETWORK, Crank, Resistance, left_pressing, resist_as, right_pressing
+from hilplant.models.load import NETWORK, resist_as
 from hilplant.models.lookup import derivative, find, value, within_turn
 from hilplant.models.motor_choice import move
 from hilplant.models.park_switch import contact_now
 from hilplant.models.records import Parameters, State
+from hilplant.models.reduced import left_pressing, right_pressing
 from hilplant.models.relays import move_relays
+from hilplant.models.resistance import Crank, Resistance
 from hilplant.models.row import unpack, write
 from hilplant.models.sensors import read_current, stick_contact
 from hilplant.models.shaft import Train, load_torque

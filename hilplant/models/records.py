@@ -80,8 +80,8 @@ class Load(NamedTuple):
     """Which load the crank carries, and its coefficients; see :mod:`hilplant.models.load`."""
 
     model: Annotated[float, quantity("", "index in load.LOADS")]
-    c1: Annotated[float, quantity("s/rad", "c1 of (6.3)")] = 0.0
-    c2: Annotated[float, quantity("N m s/rad", "c2 of (6.3)")] = 0.0
+    c1: Annotated[float, quantity("", "first coefficient of a load without tables; c1 of (6.3) [s/rad]")] = 0.0
+    c2: Annotated[float, quantity("", "second coefficient of a load without tables; c2 of (6.3) [N m s/rad]")] = 0.0
     points: Annotated[
         float, quantity("", "points of each blade at which friction acts, with equal shares of the force")
     ] = 1.0

@@ -13,10 +13,11 @@ from hilplant.jit import compiled
 from hilplant.models.armature import Drive, Motion, acceleration
 from hilplant.models.circuit import Connection
 from hilplant.models.gear import held_torque, through_gear
-from hilplant.models.load import REDUCED, Crank, Resistance, by_speed, resist_as
+from hilplant.models.load import by_speed, resist_as, without_inertia
 from hilplant.models.lookup import find, within_turn
 from hilplant.models.motor import Hold, advance, direction_of, half_period, slide, stand, stick
 from hilplant.models.records import Parameters
+from hilplant.models.resistance import Crank, Resistance
 from hilplant.models.torque_network import Tangent
 from hilplant.signals import Inputs
 
@@ -72,7 +73,7 @@ def load_torque(motion: Motion, load: Resistance, train: Train) -> float:
 @compiled
 def turn(motion: Motion, crank_angle_rad: float, load: Resistance, train: Train) -> Motion:
     """Return the motion one step later; `load` is that at the start."""
-    if train.parameters.load.model >= REDUCED:
+    if not without_inertia(train.parameters.load):
         return turn_in_stretches(motion, crank_angle_rad, load, train)
     duration, crank_speed = train.parameters.step_s, motion.speed / train.parameters.motor.gear_ratio
     half_way = crank_angle_rad + 0.5 * duration * crank_speed

@@ -3,9 +3,10 @@
 from typing import Any, NamedTuple
 
 from hilplant.jit import compiled
-from hilplant.models.load import Crank, reduced
 from hilplant.models.lookup import derivative, find, value
 from hilplant.models.records import Load
+from hilplant.models.reduced import reduced
+from hilplant.models.resistance import Crank
 from hilplant.models.row import changed
 from hilplant.models.torque_network import network_tangent
 from hilplant.signals import Inputs

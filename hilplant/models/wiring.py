@@ -12,7 +12,7 @@ from hilplant.signals import Inputs
 
 #: The circuits; `ParkSwitch.circuit` is the place of one in this list.
 CIRCUITS = ("digital", "mechanical", "depressed")
-DIGITAL, MECHANICAL, DEPRESSED = 0.0, 1.0, 2.0
+DIGITAL, MECHANICAL, DEPRESSED = (float(index) for index in range(len(CIRCUITS)))
 
 #: Positions of the mutually controlled switches 1, 2 and 3.
 OFF, SLOW, FAST = 0.0, 1.0, 2.0

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.models.batch import simulate_columns
-from hilplant.models.load import REDUCED
+from hilplant.models.load import WHOLE_WIPER
 from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX
 from hilplant.models.tables import channels as channel_count
 from hilplant.signals import INPUTS, OUTPUT_INDEX, OUTPUTS
@@ -112,6 +112,6 @@ def _check(  # noqa: PLR0913, PLR0917
     if len(places) and not (places.min() >= 0 and places.max() < len(OUTPUTS)):
         raise ValueError(f"columns are places from 0 to {len(OUTPUTS) - 1}")
     points = parameters[:, PARAMETER_INDEX["load.points"]].max(initial=1.0)
-    reduced = parameters[:, PARAMETER_INDEX["load.model"]] >= REDUCED
+    reduced = np.isin(parameters[:, PARAMETER_INDEX["load.model"]], WHOLE_WIPER)
     if reduced.any() and channels < channel_count(int(points)):
         raise ValueError(f"tables have {channels} channels, not the {channel_count(int(points))} for {points:g} points")

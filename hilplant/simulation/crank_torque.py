@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bench.assembly import Bench
-from hilplant.models.load import Crank, resist
+from hilplant.models.load import resist
 from hilplant.models.lookup import find
+from hilplant.models.resistance import Crank
 from hilplant.models.row import unpack
 from hilplant.signals import SCREENS, Inputs
 

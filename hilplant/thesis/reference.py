@@ -16,6 +16,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
 from hilplant.models import tables as channel
+from hilplant.models.load import LOADS, NONE, POLYNOMIAL, WHOLE_WIPER
 from hilplant.models.records import Blade, Brush, Friction, Parameters
 from hilplant.signals import Inputs
 from hilplant.units import TURN_RAD
@@ -75,17 +76,19 @@ class Equations:
     def frictionless(self) -> bool:
         """Whether nothing dry acts, so that standstill is a point like any other."""
         dry = self.parameters.motor.coulomb_torque_n_m + self.inputs.brake_torque_n_m
-        return dry == 0.0 and self.parameters.load.model < 2.0
+        return dry == 0.0 and self.parameters.load.model in {NONE, POLYNOMIAL}
 
     def resisting(self, angle: float, speed: float, direction: float) -> tuple[float, float]:
         """Return inertia and torque without it at the crank, against motion in `direction`."""
         load, inputs = self.parameters.load, self.inputs
-        if load.model == 0.0:
+        if load.model == NONE:
             return 0.0, inputs.brake_torque_n_m
-        if load.model == 1.0:
+        if load.model == POLYNOMIAL:
             return 0.0, max(
                 0.0, polynomial_torque(angle, speed, load.c1, load.c2) * direction
             ) + inputs.brake_torque_n_m
+        if load.model not in WHOLE_WIPER:
+            raise ArithmeticError(f"the reference does not have the load {LOADS[int(load.model)]}")
         table, wind = self.channels(angle), inputs.vehicle_speed_m_s**2
         inertia, inertia_slope = table[channel.INERTIA]
         driving = 0.5 * inertia_slope * speed**2 + table[channel.GRAVITY, 0] + wind * table[channel.DRAG, 0]

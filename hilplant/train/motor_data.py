@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bench import Bench
-from hilplant.models.load import REDUCED
+from hilplant.models.load import NETWORK, REDUCED
 from hilplant.models.plant import simulate_rows
 from hilplant.models.records import Brush, Parameters
 from hilplant.models.row import pack
@@ -58,7 +58,7 @@ class Sequence:
 def physical(parameters: Parameters) -> Parameters:
     """Return the same plant without networks: the physical motor, and the reduced load for a torque network."""
     load = parameters.load
-    if load.model > REDUCED:
+    if load.model == NETWORK:
         load = load._replace(model=float(REDUCED))
     return parameters._replace(load=load, motor_model=0.0, networks=np.zeros(0))
 

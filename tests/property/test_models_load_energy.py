@@ -8,9 +8,10 @@ from support.closed_form import ClosedFormWiper
 
 from hilplant.models.armature import Motion
 from hilplant.models.circuit import Connection
-from hilplant.models.load import Crank, resist
+from hilplant.models.load import resist
 from hilplant.models.lookup import find
 from hilplant.models.records import Arm, Blade, Brush, Friction, Load, Motor, Parameters, ParkSwitch
+from hilplant.models.resistance import Crank
 from hilplant.models.shaft import Train, turn
 from hilplant.models.torque_network import NO_TANGENT
 from hilplant.signals import Inputs

@@ -7,8 +7,8 @@ import pytest
 from cantools.database.can import Database
 from cantools.database.can.message import Message
 from cantools.database.can.signal import Signal
+from support import signal_table
 
-from hilplant import declaration, signals
 from hilplant.signals import ECU_FAULTS, ECU_STATES, IN_CHARGE, MODES, RECORDING, SCREENS, STALK_POSITIONS, STATUS
 
 ROOT = Path(__file__).parents[2]
@@ -100,17 +100,4 @@ def _unit(signal: Signal) -> str:
 
 
 def test_the_documentations_table_of_the_plants_signals_is_the_list() -> None:
-    page = (ROOT / "docs" / "can.md").read_text(encoding="utf-8")
-    rows = [line for line in page.splitlines() if re.match(r"\| (in|out|status) \|", line)]
-    kinds = (("in", signals.INPUTS), ("out", signals.OUTPUTS), ("status", signals.STATUS))
-    assert rows == [_signal_row(way, signal) for way, listed in kinds for signal in listed]
-
-
-def _signal_row(way: str, signal: declaration.Signal) -> str:
-    span = {
-        "flag": "0, 1",
-        "choice": ", ".join(signal.choices),
-        "count": "count",
-        "real": f"{signal.minimum:.4g} to {signal.maximum:.4g}",
-    }[signal.kind]
-    return f"| {way} | `{signal.name}` | {signal.unit} | {span} | {signal.meaning} |"
+    assert signal_table.written() == signal_table.table(), f"docs/can.md is stale: {signal_table.COMMAND}"
