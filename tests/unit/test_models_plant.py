@@ -58,7 +58,7 @@ def test_packing_and_unpacking_are_inverse() -> None:
 
 def test_tick_by_tick_gives_the_same_bits_as_all_rows_at_once() -> None:
     random = np.random.default_rng(3)
-    largest = [1.0, 1.0, 14.0, 1.0, 30.0, 40.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0]
+    largest = [min(signal.maximum, 40.0) for signal in INPUTS]
     inputs = np.repeat(random.uniform(0, 1, (60, len(INPUTS))) * largest, 25, axis=0)
     at_once, one_by_one = np.empty((2, len(inputs), len(OUTPUTS)))
     states = np.array([pack(START)] * 2)
