@@ -161,7 +161,7 @@ def test_text_that_is_not_utf_8_is_a_problem_where_it_is_named(tmp_path: Path) -
 
 
 def test_a_mistake_in_an_extended_bench_is_told_in_that_file(tmp_path: Path) -> None:
-    (tmp_path / "base.yaml").write_text("extends: default.yaml\nname: base\ninputs:\n  supply_v: 99\n")
+    (tmp_path / "base.yaml").write_text("extends: default.yaml\nname: base\ninputs:\n  supply_v: 999\n")
     bench = tmp_path / "bench.yaml"
     bench.write_text("extends: base.yaml\nname: over\ninputs:\n  screen: moist\n")
     problems = [(Path(problem.file).name, problem.line) for problem in check_bench(bench)]
