@@ -43,6 +43,17 @@ class Source:
         return found
 
     @cached_property
+    def libraries(self) -> set[str]:
+        """The top-level packages that the file imports."""
+        return {module.split(".")[0] for module in self.imports}
+
+    @cached_property
+    def calls(self) -> set[str]:
+        """The functions that the file calls by a bare name."""
+        nodes = (node.func for node in ast.walk(self.tree) if isinstance(node, ast.Call))
+        return {node.id for node in nodes if isinstance(node, ast.Name)}
+
+    @cached_property
     def rooms(self) -> set[str]:
         """The other rooms that this file imports from."""
         modules = {module.split(".")[1] for module in self.imports if module.startswith("hilplant.")}

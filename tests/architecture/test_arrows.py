@@ -1,39 +1,7 @@
-"""Which room may know which: physics knows no bus, the loop knows nothing that is done before it starts."""
+"""Which file may touch the world: the bus, the clock, the date, the terminal, the pictures."""
 
 from typing import Any
 
-#: Rooms that a room may import from, itself apart. A room that is not named may import from all.
-ARROWS: dict[str, set[str]] = {
-    "units": set(),
-    "failure": set(),
-    "extras": {"failure"},
-    "jit": set(),
-    "declaration": set(),
-    "signals": {"units", "declaration"},
-    "models": {"units", "declaration", "signals", "jit"},
-    "mechanics": {"units", "declaration", "signals", "failure", "models"},
-    "bus": {"units", "declaration", "signals", "failure"},
-    "control": {"units", "declaration", "signals", "failure", "jit", "models"},
-    "runtime": {"units", "declaration", "signals", "failure", "jit", "models", "control", "bus"},
-    "recording": {"units", "extras", "atomic_write", "declaration", "signals", "failure", "jit", "models", "runtime"},
-    "checked_yaml": {"failure", "resources"},
-    "bench": {
-        "units",
-        "declaration",
-        "signals",
-        "failure",
-        "jit",
-        "resources",
-        "checked_yaml",
-        "models",
-        "control",
-        "mechanics",
-        "bus",
-    },
-    "verdicts": {"checked_yaml"},
-    "doctor": {"extras", "jit"},
-    "c_source": {"failure", "jit", "atomic_write", "declaration", "signals", "models", "bench"},
-}
 #: The stand-in ECU decides without knowing that there is a bus, a bench or a clock.
 PURE_ECU = {
     f"ecu/{name}.py"
@@ -68,14 +36,24 @@ CLOCK_FILES = {
 START_TIME_FILES = {"recording/recorder.py", "cli/commands/identify.py"}
 
 
-def test_every_import_follows_an_arrow(sources: list[Any]) -> None:
-    wrong = [
-        f"{source.name} imports from {room}"
-        for source in sources
-        if source.room in ARROWS
-        for room in sorted(source.rooms - ARROWS[source.room])
+#: Programs of their own, started by their module's name: their output is what the starter reads.
+OWN_PROGRAMS = {"vcan/private_vcan.py", "recording/drain.py", "perf/own_process.py"}
+
+
+def test_only_the_command_line_prints(sources: list[Any]) -> None:
+    others = [source for source in sources if source.room != "cli"]
+    wrong = [source.name for source in others if "print" in source.calls or {"typer", "rich"} & source.libraries]
+    wrong += [
+        source.name
+        for source in others
+        if source.name not in OWN_PROGRAMS and {"stdout", "stderr"} & source.attributes_of("sys")
     ]
-    assert not wrong, "\n".join(wrong)
+    assert not wrong, f"these print: {wrong}"
+
+
+def test_only_the_plots_import_matplotlib(sources: list[Any]) -> None:
+    wrong = [source.name for source in sources if "matplotlib" in source.libraries and source.room != "plots"]
+    assert not wrong, f"these draw: {wrong}"
 
 
 def test_the_deciding_part_of_the_ecu_knows_no_bus_and_no_clock(sources: list[Any]) -> None:
