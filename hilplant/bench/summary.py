@@ -24,7 +24,7 @@ NO_LOSS_M = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class BenchSummary:
     """Figures of a bench; keys and units as `check --json` writes them.
 
     `transmission_angle_deg` is None for a linkage without any two bodies that settle each other.
@@ -41,13 +41,13 @@ class Summary:
     assumed: list[str]
 
 
-def summarise(bench: Bench) -> Summary:
+def summarise(bench: Bench) -> BenchSummary:
     """Return the figures of a bench."""
     mechanics = bench.plant.mechanics
     left, right = (np.ptp(mechanics.table[:, channel, 0]) / RAD_PER_DEG for channel in (LEFT_ROCKER, RIGHT_ROCKER))
     angle_rad = mechanics.closest.transmission_angle_rad
     frames, bits = _traffic(bench)
-    return Summary(
+    return BenchSummary(
         left_sweep_deg=float(left),
         right_sweep_deg=float(right),
         transmission_angle_deg=angle_rad / RAD_PER_DEG if math.isfinite(angle_rad) else None,
@@ -121,7 +121,7 @@ def _load(plant: Plant) -> str:
     return f"{model}, screen {plant.screen.name}, {left:g} N left and {right:g} N right at {points} of each blade"
 
 
-def _rate(made: Summary) -> str:
+def _rate(made: BenchSummary) -> str:
     return f"sends {made.sent_frames_per_s:.0f} frames/s, at most {made.sent_bits_per_s / 1000.0:.1f} kbit/s"
 
 

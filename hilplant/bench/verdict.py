@@ -10,7 +10,7 @@ from hilplant.checked_yaml.problems import BenchError, visible
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class BenchCheck:
     """Errors and warnings as lines with file and line, what to tell the user, and the figures for programs."""
 
     problems: list[str]
@@ -19,17 +19,19 @@ class Verdict:
     warnings: list[str] = field(default_factory=list)
 
 
-def verdict_on(name: str | Path) -> Verdict:
+def verdict_on(name: str | Path) -> BenchCheck:
     """Load a bench, and sum it up if nothing is wrong with it."""
     try:
         bench = load_bench(name)
     except BenchError as error:
         problems = [str(problem) for problem in error.problems]
-        return Verdict(problems, [f"{visible(str(name))}: {len(problems)} problem(s)"], _figures(problems, []))
+        return BenchCheck(problems, [f"{visible(str(name))}: {len(problems)} problem(s)"], _figures(problems, []))
     warnings = [str(problem) for problem in bench.warnings]
     doubts = f", but see {len(warnings)} warning(s)" if warnings else ""
     lines = [f"{visible(str(name))}: nothing is wrong{doubts}", *summary_lines(bench)]
-    return Verdict([], [visible(line) for line in lines], _figures([], warnings) | asdict(summarise(bench)), warnings)
+    return BenchCheck(
+        [], [visible(line) for line in lines], _figures([], warnings) | asdict(summarise(bench)), warnings
+    )
 
 
 def _figures(problems: list[str], warnings: list[str]) -> dict[str, Any]:

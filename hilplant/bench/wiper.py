@@ -167,7 +167,7 @@ def _clearance(written: LinkageFile, parts: WiperParts, table: NDArray[np.float6
     pivots = (parts.linkage.left_pivot, parts.linkage.right_pivot)
     channels = (LEFT_ROCKER, RIGHT_ROCKER)
     left, right = (
-        collision.Side(pivot, _blade_lines(side), np.ascontiguousarray(table[:, channel, 0]))
+        collision.SweepSide(pivot, _blade_lines(side), np.ascontiguousarray(table[:, channel, 0]))
         for pivot, side, channel in zip(pivots, (parts.left, parts.right), channels, strict=True)
     )
     if written.least_clearance_m is not None:

@@ -18,7 +18,7 @@ class ProtectionError(Failure):
     """Settings of a protection that cannot work; says which and what would be right."""
 
 
-class Verdict(Enum):
+class FrameCheck(Enum):
     """What a check found."""
 
     OK = "ok"
@@ -105,17 +105,17 @@ class StateMachine:
                 (Trust.NODATA, "init"), (Trust.INIT, "init"), (Trust.VALID, "valid"), (Trust.INVALID, "invalid"),
             )
         }  # fmt: skip
-        self._window: deque[Verdict] = deque(maxlen=settings.window_size_valid)
+        self._window: deque[FrameCheck] = deque(maxlen=settings.window_size_valid)
 
-    def add(self, verdict: Verdict) -> Trust:
+    def add(self, verdict: FrameCheck) -> Trust:
         """Enter the result of a check and return the state after it."""
         size, least_ok, most_errors = self._limits[self.state]
         self._window.append(verdict)
         latest = list(self._window)[-size:]
-        good = latest.count(Verdict.OK) >= least_ok
-        bad = latest.count(Verdict.WRONG_CRC) > most_errors
+        good = latest.count(FrameCheck.OK) >= least_ok
+        bad = latest.count(FrameCheck.WRONG_CRC) > most_errors
         if self.state is Trust.NODATA:
-            if verdict is not Verdict.WRONG_CRC:
+            if verdict is not FrameCheck.WRONG_CRC:
                 self.state = Trust.INIT
         elif good and not bad:
             self._enter(Trust.VALID, latest)
@@ -128,7 +128,7 @@ class StateMachine:
         self.state = Trust.NODATA
         self._window.clear()
 
-    def _enter(self, state: Trust, kept: list[Verdict]) -> None:
+    def _enter(self, state: Trust, kept: list[FrameCheck]) -> None:
         """Change the state; what lies before the window of the last one does not count in the next."""
         if state is not self.state:
             self.state = state

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.frame import Frame
 from hilplant.bus.message_state import Incoming, Outgoing, value_fault
-from hilplant.bus.protection import Verdict
+from hilplant.bus.protection import FrameCheck
 from hilplant.bus.transport import SendResult, Transport
 from hilplant.signals import STATUS, STATUS_INDEX
 from hilplant.units import MILLISECOND_NS
@@ -24,9 +24,9 @@ _CENSUS_EVERY_NS = 100 * MILLISECOND_NS
 
 
 _CAUSES = {
-    Verdict.WRONG_CRC: "wrong_crc",
-    Verdict.WRONG_COUNTER: "wrong_counter",
-    Verdict.NOT_VALID: "e2e_not_valid",
+    FrameCheck.WRONG_CRC: "wrong_crc",
+    FrameCheck.WRONG_COUNTER: "wrong_counter",
+    FrameCheck.NOT_VALID: "e2e_not_valid",
 }
 
 
@@ -163,7 +163,7 @@ class Node:
             return "wrong_length" if fd == message.fd else "fd_frame"
         if incoming.checker is not None:
             verdict = incoming.checker.check(data)
-            if verdict is not Verdict.OK:
+            if verdict is not FrameCheck.OK:
                 return _CAUSES[verdict]
         decoded = message.decode(data)
         cause = value_fault(decoded, message.limits)

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 from hilplant.bus.e2e_profiles import PROFILES, Profile
-from hilplant.bus.e2e_state import ProtectionError, StateMachine, StateMachineSettings, Trust, Verdict
+from hilplant.bus.e2e_state import FrameCheck, ProtectionError, StateMachine, StateMachineSettings, Trust
 
-__all__ = ["Checker", "Protection", "ProtectionError", "Protector", "Verdict"]
+__all__ = ["Checker", "FrameCheck", "Protection", "ProtectionError", "Protector"]
 
 _DATA_IDS_OF_2 = 16
 _BYTE_MAX = 255
@@ -155,11 +155,11 @@ class Checker:
         """Whether the state machine has found that the message is not to be trusted."""
         return self._machine is not None and self._machine.state is Trust.INVALID
 
-    def check(self, data: bytes) -> Verdict:
+    def check(self, data: bytes) -> FrameCheck:
         """Judge a frame."""
         verdict = self._judge(data)
-        if self._machine is not None and self._machine.add(verdict) is not Trust.VALID and verdict is Verdict.OK:
-            return Verdict.NOT_VALID
+        if self._machine is not None and self._machine.add(verdict) is not Trust.VALID and verdict is FrameCheck.OK:
+            return FrameCheck.NOT_VALID
         return verdict
 
     def reset(self) -> None:
@@ -168,15 +168,15 @@ class Checker:
         if self._machine is not None:
             self._machine.reset()
 
-    def _judge(self, data: bytes) -> Verdict:
+    def _judge(self, data: bytes) -> FrameCheck:
         header = self._header
         copy = bytearray(data)  # the library's profiles 1 and 11 check nothing that cannot be changed
         if not header.profile.check(copy, header.identity, **header.keywords):
-            return Verdict.WRONG_CRC
+            return FrameCheck.WRONG_CRC
         last, self._last = self._last, header.counter(data)
         if last is not None and not 1 <= (self._last - last) % header.profile.modulus <= self._max_delta:
-            return Verdict.WRONG_COUNTER
-        return Verdict.OK
+            return FrameCheck.WRONG_COUNTER
+        return FrameCheck.OK
 
 
 class Protector:

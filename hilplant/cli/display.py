@@ -33,7 +33,7 @@ _GLASS: list[Point] = [(-1.52, 0.0), (-1.12, 1.14), (0.52, 1.14), (0.92, 0.0), (
 Newest = Callable[[], NDArray[np.float64]]
 
 
-class Reading(NamedTuple):
+class ShownRow(NamedTuple):
     """One row of the ring by name: inputs, outputs and status of a tick."""
 
     time_s: float
@@ -62,16 +62,16 @@ class Scene(NamedTuple):
     stalk: str = ""
 
 
-def reading(row: NDArray[np.float64]) -> Reading:
+def reading(row: NDArray[np.float64]) -> ShownRow:
     """Name the values of a row: tick, time [ns], inputs, outputs, status."""
     values = iter(row.tolist())
     next(values)
     time_s = next(values) / SECOND_NS
     named = [{signal.name: next(values) for signal in signals} for signals in (INPUTS, OUTPUTS, STATUS)]
-    return Reading(time_s, *named)
+    return ShownRow(time_s, *named)
 
 
-def plain_line(now: Reading) -> str:
+def plain_line(now: ShownRow) -> str:
     """Return one line of figures, for a log or a pipe."""
     outputs, status = now.outputs, now.status
     return (
@@ -81,7 +81,7 @@ def plain_line(now: Reading) -> str:
     )
 
 
-def picture(now: Reading, scene: Scene) -> RenderableType:
+def picture(now: ShownRow, scene: Scene) -> RenderableType:
     """Return the whole picture, 78 columns by 21 rows."""
     head = Table.grid(expand=True)
     head.add_column()
@@ -126,11 +126,11 @@ def _print_lines(newest: Newest, done: Callable[[], bool], console: Console, pau
         pause(0.05)
 
 
-def _per_minute(now: Reading) -> float:
+def _per_minute(now: ShownRow) -> float:
     return now.outputs["crank_speed_rad_s"] / TURN_RAD * 60.0
 
 
-def _screen(now: Reading) -> Canvas:
+def _screen(now: ShownRow) -> Canvas:
     canvas = Canvas(48, 11, (-1.55, -0.02), 36.0)
     canvas.path(_GLASS)
     for pivot, name in ((_LEFT_PIVOT, "left_arm_rad"), (_RIGHT_PIVOT, "right_arm_rad")):
@@ -152,7 +152,7 @@ def _draw_arm(canvas: Canvas, pivot: Point, angle_rad: float) -> None:
         canvas.line(at(_ARM_LENGTH - _BLADE_HALF_LENGTH, aside), at(_ARM_LENGTH + _BLADE_HALF_LENGTH, aside))
 
 
-def _dial(now: Reading) -> Text:
+def _dial(now: ShownRow) -> Text:
     """Draw the crank as a hand on a dial, park upwards; anticlockwise like the angle."""
     canvas = Canvas(22, 9, (-1.22, -1.0), 17.0)
     for index in range(120):
@@ -167,7 +167,7 @@ def _on_dial(angle_rad: float, radius: float) -> Point:
     return -radius * math.sin(angle_rad), radius * math.cos(angle_rad)
 
 
-def _switches(now: Reading, scene: Scene) -> Text:
+def _switches(now: ShownRow, scene: Scene) -> Text:
     relay_style = {"OFF": "dim", "SLOW": "bold green", "FAST": "bold yellow"}[now.relays]
     park = ("closed", "bold green") if now.outputs["park_contact"] else ("open", "dim")
     stalk = ("stalk ", (f"{scene.stalk:<16}", "bold")) if scene.stalk else ()
@@ -177,7 +177,7 @@ def _switches(now: Reading, scene: Scene) -> Text:
     )  # fmt: skip
 
 
-def _gauges(now: Reading) -> Table:
+def _gauges(now: ShownRow) -> Table:
     table = Table.grid(padding=(0, 1))
     outputs = now.outputs
     for name, value, unit, full in (
@@ -196,7 +196,7 @@ def _bar(value: float, full: float) -> Text:
     return Text.assemble(("█" * filled, style), ("░" * (_BAR_CELLS - filled), "dim"))
 
 
-def _health(now: Reading) -> Text:
+def _health(now: ShownRow) -> Text:
     status = now.status
     late = "red" if status["overruns"] else "green"
     return Text.assemble(

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from hilplant.control.controller import Tables
-from hilplant.control.design import Noise, armature, internal_model_pid, model
+from hilplant.control.design import ObserverNoise, armature, internal_model_pid, model
 from hilplant.control.fuzzy_sets import gain_table
 from hilplant.control.records import LAWS, RULES, SOURCES, Cascade, Controller, Neuron, Pid, Stages
 from hilplant.failure import Failure
@@ -50,7 +50,7 @@ SENSORLESS, ADAPTING = "_sensorless", 0.5
 UP_V, DOWN_V = 18.0, 12.0
 
 #: What an observer assumes where only the current is measured: the load torque changes faster than sensors tell.
-BLIND_NOISE = Noise(current_a=0.05, voltage_v=0.02, torque_rate=3.0)
+BLIND_NOISE = ObserverNoise(current_a=0.05, voltage_v=0.02, torque_rate=3.0)
 
 
 def pid(motor: Motor, period_s: float, gains: Pid) -> Controller:
@@ -160,5 +160,5 @@ def controller_named(name: str, motor: Motor, period_s: float) -> Controller:
 
 def _known(motor: Motor, period_s: float) -> Controller:
     """Return a controller that knows the motor, without a law yet."""
-    slow, fast = (model(armature(motor, brush), period_s, Noise(), True) for brush in (False, True))
+    slow, fast = (model(armature(motor, brush), period_s, ObserverNoise(), True) for brush in (False, True))
     return Controller(0.0, period_s, slow=slow, fast=fast)

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 from hilplant.control.controller import Tables, control
 from hilplant.control.observer import correct, learn_resistance, predict
-from hilplant.control.records import AT_REST, Controller, Estimate, Measured, Memory, Model
+from hilplant.control.records import AT_REST, Controller, Measured, Memory, Model, SpeedEstimate
 from hilplant.jit import compiled
 from hilplant.models.park_switch import contact_now
 from hilplant.models.plant import step
@@ -75,7 +75,7 @@ def run_rows(memory: Memory, controller: Controller, tables: Tables, plant: Any,
 
 
 @compiled
-def observe_rows(model: Model, period_s: float, adapting: float, records: Any, speeds: Any) -> Estimate:
+def observe_rows(model: Model, period_s: float, adapting: float, records: Any, speeds: Any) -> SpeedEstimate:
     """Run an observer over a recording, and fill `speeds` [ticks] with its crank speeds [rad/s]; return its end.
 
     `records` is an array [ticks, 3] of the voltage in force from each tick on, the current and the park contact at it.

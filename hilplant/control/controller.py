@@ -12,10 +12,10 @@ from hilplant.control.records import (
     SOURCES,
     Command,
     Controller,
-    Estimate,
     Measured,
     Memory,
     PidMemory,
+    SpeedEstimate,
 )
 from hilplant.control.single_neuron import single_neuron
 from hilplant.control.stages import choose_stage
@@ -79,7 +79,9 @@ def control(
 
 
 @compiled
-def speed_seen(memory: Memory, measured: Measured, estimate: Estimate, controller: Controller, tables: Tables) -> float:
+def speed_seen(
+    memory: Memory, measured: Measured, estimate: SpeedEstimate, controller: Controller, tables: Tables
+) -> float:
     """Return the crank's speed [rad/s] from the sensor, the network or the observer.
 
     Network and observer use the voltage that was in force until now, which is the one that made the current.

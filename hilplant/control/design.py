@@ -6,11 +6,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import expm, solve_discrete_are
 
-from hilplant.control.records import Armature, Model, Observer, Pid
+from hilplant.control.records import BelievedArmature, Model, Observer, Pid
 from hilplant.models.records import Motor
 
 
-class Noise(NamedTuple):
+class ObserverNoise(NamedTuple):
     """Standard deviations that the Kalman gain weighs, all at the sampling instants; all assumed.
 
     `current_a`, `speed_rad_s` (of the motor): of the measurements. `voltage_v`: of what the
@@ -23,15 +23,15 @@ class Noise(NamedTuple):
     torque_rate: float = 10.0
 
 
-def armature(motor: Motor, fast: bool, load_inertia_kg_m2: float = 0.0) -> Armature:
+def armature(motor: Motor, fast: bool, load_inertia_kg_m2: float = 0.0) -> BelievedArmature:
     """Return one brush of a motor, with an inertia of the load [kg m2, at the motor shaft] taken for granted."""
     brush = motor.fast if fast else motor.slow
     inertia = motor.inertia_kg_m2 + load_inertia_kg_m2
-    return Armature(*brush, inertia, motor.damping_n_m_s, motor.gear_ratio)
+    return BelievedArmature(*brush, inertia, motor.damping_n_m_s, motor.gear_ratio)
 
 
 @lru_cache(maxsize=64)  # a Riccati equation each; many controllers believe in the same motor
-def model(believed: Armature, period_s: float, noise: Noise, speed_sensor: bool) -> Model:
+def model(believed: BelievedArmature, period_s: float, noise: ObserverNoise, speed_sensor: bool) -> Model:
     """Return a brush with its observer: x = (i, w, torque), torque held, gains from the discrete Riccati equation.
 
     ``expm`` of the augmented matrix gives the exact discretisation; the gains are those of the filter form, in which
@@ -54,7 +54,7 @@ def model(believed: Armature, period_s: float, noise: Noise, speed_sensor: bool)
     return Model(a, Observer(*transition[:2].ravel(), *from_voltage[:2], *gain[:, 0], *by_speed))
 
 
-def internal_model_pid(believed: Armature, period_s: float, load_inertia_kg_m2: float = 2.5e-5) -> Pid:
+def internal_model_pid(believed: BelievedArmature, period_s: float, load_inertia_kg_m2: float = 2.5e-5) -> Pid:
     """Return PI gains by Skogestad's internal model control rules (SIMC; J. Process Control 13, 2003, 291-309).
 
     The motor from voltage to crank speed is two lags. The longer one is kept, half of the shorter one is counted as

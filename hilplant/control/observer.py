@@ -8,7 +8,7 @@ crank turns once, and what the estimate has turned too much or too little is the
 
 import math
 
-from hilplant.control.records import Armature, Cascade, Estimate, Measured, Model
+from hilplant.control.records import BelievedArmature, Cascade, Measured, Model, SpeedEstimate
 from hilplant.jit import compiled
 from hilplant.units import TURN_RAD
 
@@ -19,7 +19,7 @@ LEAST_CHARGE_A_S = 0.05
 
 
 @compiled
-def correct(estimate: Estimate, measured: Measured, model: Model) -> Estimate:
+def correct(estimate: SpeedEstimate, measured: Measured, model: Model) -> SpeedEstimate:
     """Return what is believed at this instant, after a look at the measurements.
 
     A current that is not a finite number is taken as the one that was expected, a speed likewise: the
@@ -30,7 +30,7 @@ def correct(estimate: Estimate, measured: Measured, model: Model) -> Estimate:
     speed = 0.0
     if o.speed_2 != 0.0:
         speed = finite_or_zero(measured.speed_rad_s * model.armature.gear_ratio - estimate.motor_speed_rad_s)
-    return Estimate(
+    return SpeedEstimate(
         estimate.current_a + o.current_1 * current + o.speed_1 * speed,
         max(0.0, estimate.motor_speed_rad_s + o.current_2 * current + o.speed_2 * speed),
         estimate.torque_n_m + o.current_3 * current + o.speed_3 * speed,
@@ -42,7 +42,7 @@ def correct(estimate: Estimate, measured: Measured, model: Model) -> Estimate:
 
 
 @compiled
-def predict(now: Estimate, voltage_v: float, model: Model, period_s: float) -> Estimate:
+def predict(now: SpeedEstimate, voltage_v: float, model: Model, period_s: float) -> SpeedEstimate:
     """Return what is believed for the next tick, with the voltage [V] that is in force until then."""
     o, a = model.observer, model.armature
     i, w, torque = now.current_a, now.motor_speed_rad_s, now.torque_n_m
@@ -53,18 +53,20 @@ def predict(now: Estimate, voltage_v: float, model: Model, period_s: float) -> E
     if turned >= 0.0:
         turned += 0.5 * (w + ahead_w) * period_s / a.gear_ratio
         charge += 0.5 * (i + ahead_i) * period_s
-    return Estimate(ahead_i, ahead_w, torque, now.resistance_factor, turned, charge, now.contact)
+    return SpeedEstimate(ahead_i, ahead_w, torque, now.resistance_factor, turned, charge, now.contact)
 
 
 @compiled
-def learn_resistance(now: Estimate, park_contact: float, armature: Armature, adapting: float) -> Estimate:
+def learn_resistance(
+    now: SpeedEstimate, park_contact: float, armature: BelievedArmature, adapting: float
+) -> SpeedEstimate:
     """Return the belief; where the park contact has just closed after a whole turn, with a corrected resistance.
 
     With w = (V - R i)/K, a resistance too small by dR makes the turn too long by dR/(K N) times the charge that has
     flown. `adapting` is the part of it, 0 to 1, that is taken over at once.
     """
     if not (park_contact > 0.5 and now.contact < 0.5):
-        return Estimate(
+        return SpeedEstimate(
             now.current_a,
             now.motor_speed_rad_s,
             now.torque_n_m,
@@ -77,11 +79,11 @@ def learn_resistance(now: Estimate, park_contact: float, armature: Armature, ada
     if now.turned_rad >= 0.0 and now.charge_a_s > LEAST_CHARGE_A_S:
         excess = (now.turned_rad - TURN_RAD) * armature.constant_v_s * armature.gear_ratio / now.charge_a_s
         factor = min(max(factor + adapting * excess / armature.resistance_ohm, LEAST_FACTOR), GREATEST_FACTOR)
-    return Estimate(now.current_a, now.motor_speed_rad_s, now.torque_n_m, factor, 0.0, 0.0, park_contact)
+    return SpeedEstimate(now.current_a, now.motor_speed_rad_s, now.torque_n_m, factor, 0.0, 0.0, park_contact)
 
 
 @compiled
-def voltage_for(estimate: Estimate, speed_rad_s: float, armature: Armature, cascade: Cascade) -> float:
+def voltage_for(estimate: SpeedEstimate, speed_rad_s: float, armature: BelievedArmature, cascade: Cascade) -> float:
     """Return the voltage [V] that brings the crank to a speed [rad/s] and holds it there against the believed load.
 
     Two loops in a row, each a first order lag by the model: the speed asks for a torque, the torque for a current,

@@ -60,7 +60,7 @@ class Neuron(NamedTuple):
     first_output: float = 1.0  # b0 of (7.10)
 
 
-class Armature(NamedTuple):
+class BelievedArmature(NamedTuple):
     """The motor as a controller believes it to be, with one brush; all SI, all at the motor shaft."""
 
     resistance_ohm: float = 1.0
@@ -97,7 +97,7 @@ class Observer(NamedTuple):
 class Model(NamedTuple):
     """What a controller knows of one brush."""
 
-    armature: Armature = Armature()
+    armature: BelievedArmature = BelievedArmature()
     observer: Observer = Observer()  # with a speed sensor if the controller has one
 
 
@@ -137,7 +137,7 @@ class Controller(NamedTuple):
     adapting: float = 0.0  # gain of the resistance's correction at each passage of the park switch, 0 to 1
 
 
-class Estimate(NamedTuple):
+class SpeedEstimate(NamedTuple):
     """What an observer believes, and what it needs to correct the resistance once a turn."""
 
     current_a: float = 0.0
@@ -181,11 +181,11 @@ class Memory(NamedTuple):
     stage: Stage = Stage()
     pid: PidMemory = PidMemory()
     neuron: NeuronMemory = NeuronMemory()
-    estimate: Estimate = Estimate()
+    estimate: SpeedEstimate = SpeedEstimate()
 
 
 #: What every controller remembers before its first tick.
 POWER_ON = Memory()
 
 #: What an observer believes before its first tick.
-AT_REST = Estimate()
+AT_REST = SpeedEstimate()

@@ -16,12 +16,12 @@ from typing import NamedTuple
 
 from hilplant.bench import Bench, load_bench
 from hilplant.bus.transport import open_transport
-from hilplant.cli.actions.run import Record, recording
-from hilplant.demo.sequence import Sequence
+from hilplant.demo.sequence import DemoSequence
 from hilplant.ecu.node import EcuNode, run_ecu
 from hilplant.ecu.settings import controller_settings
 from hilplant.ecu.stalk import stalk_at
 from hilplant.ecu.vocabulary import INTERVALS, Stalk
+from hilplant.recording.beside_loop import RecordTo, recording
 from hilplant.runtime.clock import WallClock
 from hilplant.runtime.server import StopRequest, Summary, serve
 from hilplant.signals import INPUT_INDEX
@@ -46,7 +46,7 @@ class Failed(NamedTuple):
 Message = Started | Failed | Summary
 
 
-def serve_demo(plan: Sequence, path: Path, pipe: "Connection[Message, None]") -> None:
+def serve_demo(plan: DemoSequence, path: Path, pipe: "Connection[Message, None]") -> None:
     """Run the demonstration and record it to `path`; say what happens through `pipe`."""
     # Until the loop runs, and ends on Ctrl-C by itself, the parent decides what Ctrl-C means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -58,7 +58,7 @@ def serve_demo(plan: Sequence, path: Path, pipe: "Connection[Message, None]") ->
             pipe.send(Failed(str(error) or type(error).__name__))
 
 
-def _serve(plan: Sequence, path: Path, say: Callable[[Message], None]) -> Summary:
+def _serve(plan: DemoSequence, path: Path, say: Callable[[Message], None]) -> Summary:
     bench = _raining(load_bench(BENCH))
     ended, stop = threading.Event(), StopRequest()
     parent = os.getppid()
@@ -69,7 +69,7 @@ def _serve(plan: Sequence, path: Path, say: Callable[[Message], None]) -> Summar
 
     node = _ecu_node(bench, plan)
     ecu = threading.Thread(target=drive, name="ecu", daemon=True)
-    with recording(bench, Record(path)) as ring:
+    with recording(bench, RecordTo(path)) as ring:
         assert ring is not None
         name = ring.name
 
@@ -94,13 +94,13 @@ def _raining(bench: Bench) -> Bench:
     return replace(bench, input_row=input_row)
 
 
-def _ecu_node(bench: Bench, plan: Sequence) -> EcuNode:
+def _ecu_node(bench: Bench, plan: DemoSequence) -> EcuNode:
     settings = controller_settings(bench.ecu)._replace(pauses_s=(plan.pause_s,) * len(INTERVALS))
     side = replace(bench.ecu_side(), stalk=())  # nobody else is on this bus
     return EcuNode(side, open_transport(bench.interface), settings)
 
 
-def _drive(node: EcuNode, plan: Sequence, ended: Callable[[], bool]) -> None:
+def _drive(node: EcuNode, plan: DemoSequence, ended: Callable[[], bool]) -> None:
     def stalk(elapsed_s: float) -> Stalk:
         return stalk_at(plan.turns, elapsed_s)
 

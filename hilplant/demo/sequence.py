@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from hilplant.ecu.stalk import Turn, move_named
+from hilplant.ecu.stalk import StalkTurn, move_named
 from hilplant.failure import Failure
 
 USUAL_S = 20.0
@@ -14,15 +14,15 @@ SHORTEST_S, WHOLE_S = 1.0, 8.0
 _FLICK_S, _PARKING_S = 2.0, 1.8
 
 
-class Sequence(NamedTuple):
+class DemoSequence(NamedTuple):
     """A demonstration: its length, the stalk over time, and the ECU's pause between intermittent wipes."""
 
     seconds: float
-    turns: tuple[Turn, ...]
+    turns: tuple[StalkTurn, ...]
     pause_s: float
 
 
-def sequence(seconds: float | None) -> Sequence:
+def sequence(seconds: float | None) -> DemoSequence:
     """Return off, slow, fast, intermittent, off and a flick, spread over `seconds`.
 
     Raises
@@ -43,10 +43,10 @@ def sequence(seconds: float | None) -> Sequence:
         _turn(active_s, "off"),
         _turn(length_s - _FLICK_S, "flick"),
     )
-    return Sequence(asked_s, turns, pause_s=min(2.0, 0.08 * active_s))
+    return DemoSequence(asked_s, turns, pause_s=min(2.0, 0.08 * active_s))
 
 
-def _turn(time_s: float, word: str) -> Turn:
+def _turn(time_s: float, word: str) -> StalkTurn:
     move = move_named(word)
     assert move is not None
-    return Turn(time_s, move)
+    return StalkTurn(time_s, move)

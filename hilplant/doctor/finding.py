@@ -8,7 +8,7 @@ State = Literal["ok", "warn", "bad"]
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class MachineFinding:
     """What was examined, how it stands, what that means, and the command that mends it ("" when none is needed)."""
 
     name: str

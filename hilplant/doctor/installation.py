@@ -6,13 +6,13 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from hilplant.doctor.finding import Finding
+from hilplant.doctor.finding import MachineFinding
 from hilplant.extras import EXTRAS, missing, remedy
 
 WANTED_SHARED_BYTES = 64 * 2**20
 
 
-def compiled_code(_root: Path) -> Iterator[Finding]:
+def compiled_code(_root: Path) -> Iterator[MachineFinding]:
     """Ask where compiled models are kept, and whether any are there."""
     import numba
 
@@ -21,36 +21,36 @@ def compiled_code(_root: Path) -> Iterator[Finding]:
     folder = Path(vars(numba.config)["CACHE_DIR"])
     if folder.is_relative_to(tempfile.gettempdir()) and "HOME" in os.environ:
         mend = "export NUMBA_CACHE_DIR=/var/cache/hilplant   # a folder that this user may write"
-        yield Finding("compiled models", "warn", f"{folder} is temporary: every start compiles again", mend)
+        yield MachineFinding("compiled models", "warn", f"{folder} is temporary: every start compiles again", mend)
     elif any(folder.rglob("*.nbi")):
-        yield Finding("compiled models", "ok", f"kept in {folder}")
+        yield MachineFinding("compiled models", "ok", f"kept in {folder}")
     else:
         what = f"none in {folder} yet: the next start compiles, 10 to 20 s"
-        yield Finding("compiled models", "warn", what, "hilplant run virtual --seconds 1")
+        yield MachineFinding("compiled models", "warn", what, "hilplant run virtual --seconds 1")
 
 
-def shared_memory(root: Path) -> Iterator[Finding]:
+def shared_memory(root: Path) -> Iterator[MachineFinding]:
     """Ask for room for the ring that the recorder reads."""
     folder = root / "dev/shm"
     if not folder.exists():
         return
     free = shutil.disk_usage(folder).free
     if os.access(folder, os.W_OK) and free >= WANTED_SHARED_BYTES:
-        yield Finding("shared memory", "ok", f"{free // 2**20} MiB free in /dev/shm")
+        yield MachineFinding("shared memory", "ok", f"{free // 2**20} MiB free in /dev/shm")
     else:
         what = f"{free // 2**20} MiB free in /dev/shm, or not writable: no room for the recorder's ring"
-        yield Finding("shared memory", "bad", what, "sudo mount -o remount,size=256M /dev/shm")
+        yield MachineFinding("shared memory", "bad", what, "sudo mount -o remount,size=256M /dev/shm")
 
 
-def extras(_root: Path) -> Iterator[Finding]:
+def extras(_root: Path) -> Iterator[MachineFinding]:
     """Look for the optional libraries."""
     for extra, contents in EXTRAS.items():
         if absent := missing(extra):
-            yield Finding(
+            yield MachineFinding(
                 f"extra {extra}", "warn", f"{', '.join(absent)} missing: no {contents.purpose}", remedy(extra)
             )
         else:
-            yield Finding(f"extra {extra}", "ok", f"present: {contents.purpose}")
+            yield MachineFinding(f"extra {extra}", "ok", f"present: {contents.purpose}")
 
 
 CHECKS = (compiled_code, shared_memory, extras)

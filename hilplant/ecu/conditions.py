@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from hilplant.ecu.sensing import Senses
-from hilplant.ecu.vocabulary import INTERVALS, Master, Settings, Stalk
+from hilplant.ecu.vocabulary import INTERVALS, Master, RelaySettings, Stalk
 
 
 class View(NamedTuple):
@@ -16,7 +16,7 @@ class View(NamedTuple):
 
     stalk: Stalk
     senses: Senses
-    settings: Settings
+    settings: RelaySettings
     now_s: float
     in_phase_s: float
     turning_s: float

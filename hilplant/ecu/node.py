@@ -8,9 +8,9 @@ from hilplant.bench.ecu_side import EcuSide
 from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.node import LinkSettings, Node
 from hilplant.bus.transport import Transport
-from hilplant.ecu.relay_controller import State, advance
+from hilplant.ecu.relay_controller import ControllerState, advance
 from hilplant.ecu.stalk import StalkSource
-from hilplant.ecu.vocabulary import RELAYS_OFF, Fault, Inputs, Master, Relays, Settings, Stalk
+from hilplant.ecu.vocabulary import RELAYS_OFF, EcuInputs, Fault, Master, RelayCommand, RelaySettings, Stalk
 from hilplant.runtime.clock import Clock
 from hilplant.signals import ECU_FAULTS, ECU_HEARD, ECU_HEARD_INDEX, ECU_SAID, ECU_SAID_INDEX, ECU_STATES
 from hilplant.units import MILLISECOND_NS, SECOND_NS
@@ -23,13 +23,13 @@ _RELAYS = (ECU_SAID_INDEX["relay_on"], ECU_SAID_INDEX["relay_fast"])
 _TOLD = tuple(ECU_SAID_INDEX[name] for name in ("ecu_state", "ecu_fault", "ecu_tries"))
 
 
-class Report(NamedTuple):
+class EcuReport(NamedTuple):
     """What the ECU did at one moment, for whoever watches."""
 
     time_s: float
     stalk: Stalk
-    state: State
-    relays: Relays
+    state: ControllerState
+    relays: RelayCommand
     fault: Fault
     park_known: bool
 
@@ -43,10 +43,10 @@ class EcuNode:
     at each poll; `counts` are the node's, by ``signals.STATUS``.
     """
 
-    def __init__(self, side: EcuSide, transport: Transport, settings: Settings) -> None:
+    def __init__(self, side: EcuSide, transport: Transport, settings: RelaySettings) -> None:
         """Join the bus with the ECU's side of a bench's messages."""
-        self.state = State()
-        self.report: Callable[[Report], None] | None = None
+        self.state = ControllerState()
+        self.report: Callable[[EcuReport], None] | None = None
         self._settings = settings
         self._said = [signal.default for signal in ECU_SAID]
         heard = [*_that_carry((_PARK, _CURRENT, _SUPPLY), side.receive), *side.stalk]
@@ -58,7 +58,7 @@ class EcuNode:
         """What went wrong on the bus, by ``signals.STATUS``."""
         return self._node.counts
 
-    def poll(self, now_ns: int, stalk: Stalk) -> Relays:
+    def poll(self, now_ns: int, stalk: Stalk) -> RelayCommand:
         """Take in frames, decide, send what is due; `now_ns` must not run backwards.
 
         `stalk` is that of the hand at this end; a stalk that is heard on the bus goes before it.
@@ -69,14 +69,14 @@ class EcuNode:
         stalk = self._heard_stalk() if heard_once and not lost else stalk
         contact = self._known(_PARK)
         closed = None if math.isnan(contact) else contact > 0.5
-        inputs = Inputs(stalk, closed, self._known(_CURRENT), self._known(_SUPPLY))
+        inputs = EcuInputs(stalk, closed, self._known(_CURRENT), self._known(_SUPPLY))
         now_s = now_ns / SECOND_NS
         self.state, relays, fault = advance(self.state, inputs, now_s, self._settings)
         fault = Fault.STALK_LOST if lost and fault is Fault.NONE else fault
         self._say(relays, fault)
         self._node.send(now_ns, self._said)
         if self.report is not None:
-            self.report(Report(now_s, stalk, self.state, relays, fault, closed is not None))
+            self.report(EcuReport(now_s, stalk, self.state, relays, fault, closed is not None))
         return relays
 
     def release(self) -> None:
@@ -97,7 +97,7 @@ class EcuNode:
         interval = 1 if math.isnan(values[_INTERVAL]) else round(values[_INTERVAL])
         return Stalk(Master(round(values[_MASTER])), interval, values[_FLICK] > 0.5, values[_WASH] > 0.5)
 
-    def _say(self, relays: Relays, fault: Fault) -> None:
+    def _say(self, relays: RelayCommand, fault: Fault) -> None:
         told = (_STATE_NUMBERS[self.state.phase.value], _FAULT_NUMBERS[fault.value], float(self.state.tries))
         for index, value in zip((*_RELAYS, *_TOLD), (*relays, *told), strict=True):
             self._said[index] = float(value)

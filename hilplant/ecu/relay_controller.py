@@ -9,13 +9,13 @@ from typing import NamedTuple
 from hilplant.ecu.chart import EXITS, RESTING, SPEEDS, WIPING, Phase, Transition
 from hilplant.ecu.conditions import View
 from hilplant.ecu.sensing import Senses, sense
-from hilplant.ecu.vocabulary import RELAYS_OFF, Fault, Inputs, Relays, Settings
+from hilplant.ecu.vocabulary import RELAYS_OFF, EcuInputs, Fault, RelayCommand, RelaySettings
 
 _RESTING, _WIPING = frozenset(RESTING), frozenset(WIPING)
 _HELD_UP = frozenset((Phase.BLIND, Phase.BROWN_OUT))
 
 
-class State(NamedTuple):
+class ControllerState(NamedTuple):
     """What the controller remembers; the defaults are its state at power-on.
 
     `since_s` is when the phase began, `turn_s` when the wiper last came to park or began to be driven. `driven_s` is
@@ -38,17 +38,21 @@ class State(NamedTuple):
     senses: Senses = Senses()
 
 
-def advance(state: State, inputs: Inputs, now_s: float, settings: Settings) -> tuple[State, Relays, Fault]:
+def advance(
+    state: ControllerState, inputs: EcuInputs, now_s: float, settings: RelaySettings
+) -> tuple[ControllerState, RelayCommand, Fault]:
     """Take one look at the inputs; return the relays to command and the fault to report.
 
     At most one transition of the chart is taken in each call. `now_s` must not run backwards.
     """
     state, _ = take(state, inputs, now_s, settings)
     driving = state.phase in _WIPING
-    return state, Relays(True, state.fast) if driving else RELAYS_OFF, state.fault
+    return state, RelayCommand(True, state.fast) if driving else RELAYS_OFF, state.fault
 
 
-def take(state: State, inputs: Inputs, now_s: float, settings: Settings) -> tuple[State, Transition | None]:
+def take(
+    state: ControllerState, inputs: EcuInputs, now_s: float, settings: RelaySettings
+) -> tuple[ControllerState, Transition | None]:
     """Do what :func:`advance` does, and return the transition that was taken, None where the phase stays."""
     senses = sense(state.senses, inputs, now_s, settings)
     if senses.arrived and state.leaving:
@@ -64,7 +68,7 @@ def take(state: State, inputs: Inputs, now_s: float, settings: Settings) -> tupl
     return _forgive(state, turned_s, now_s, settings), row
 
 
-def _view(state: State, inputs: Inputs, now_s: float, settings: Settings) -> View:
+def _view(state: ControllerState, inputs: EcuInputs, now_s: float, settings: RelaySettings) -> View:
     return View(
         inputs.stalk,
         state.senses,
@@ -78,7 +82,7 @@ def _view(state: State, inputs: Inputs, now_s: float, settings: Settings) -> Vie
     )
 
 
-def _enter(state: State, row: Transition, view: View) -> State:
+def _enter(state: ControllerState, row: Transition, view: View) -> ControllerState:
     """Return the state at the beginning of a phase."""
     was_driving, now_s = state.phase in _WIPING, view.now_s
     speed = SPEEDS.get(row.target)
@@ -102,7 +106,7 @@ def _enter(state: State, row: Transition, view: View) -> State:
     return state._replace(tries=0, driven_s=0.0) if Phase.LOCKOUT in row.sources else state
 
 
-def _forgive(state: State, turned_s: float, now_s: float, settings: Settings) -> State:
+def _forgive(state: ControllerState, turned_s: float, now_s: float, settings: RelaySettings) -> ControllerState:
     """Forget what went wrong after a sound turn that goes on, or a rest in park."""
     senses = state.senses
     if state.phase in _WIPING:

@@ -6,7 +6,7 @@ Pure: a memory and one look at the inputs in, the next memory out; time is an ar
 import math
 from typing import NamedTuple
 
-from hilplant.ecu.vocabulary import Inputs, Settings
+from hilplant.ecu.vocabulary import EcuInputs, RelaySettings
 
 
 class Senses(NamedTuple):
@@ -30,7 +30,7 @@ class Senses(NamedTuple):
     good_s: float = math.inf
 
 
-def sense(before: Senses, inputs: Inputs, now_s: float, settings: Settings) -> Senses:
+def sense(before: Senses, inputs: EcuInputs, now_s: float, settings: RelaySettings) -> Senses:
     """Take one look at the inputs.
 
     The wiper has arrived at park only when the contact closes after it was open for longer than contacts
@@ -44,7 +44,7 @@ def sense(before: Senses, inputs: Inputs, now_s: float, settings: Settings) -> S
     return _watch_supply(senses, inputs.supply_v, now_s, settings)
 
 
-def _watch_contact(before: Senses, contact: bool | None, now_s: float, settings: Settings) -> Senses:
+def _watch_contact(before: Senses, contact: bool | None, now_s: float, settings: RelaySettings) -> Senses:
     never = math.inf
     if contact is None:
         return before._replace(contact=None, opened_s=never, closed_s=never, away=False, arrived=False)
@@ -56,7 +56,7 @@ def _watch_contact(before: Senses, contact: bool | None, now_s: float, settings:
     return before._replace(contact=False, opened_s=opened_s, closed_s=never, away=away, arrived=False)
 
 
-def _count_edges(senses: Senses, before: bool | None, now_s: float, settings: Settings) -> Senses:
+def _count_edges(senses: Senses, before: bool | None, now_s: float, settings: RelaySettings) -> Senses:
     """Count the changes of the contact in windows that follow each other."""
     if now_s - senses.window_s >= settings.bounce_window_s:
         senses = senses._replace(edges=0, window_s=now_s)
@@ -64,7 +64,7 @@ def _count_edges(senses: Senses, before: bool | None, now_s: float, settings: Se
     return senses._replace(edges=senses.edges + 1) if changed else senses
 
 
-def _watch_supply(senses: Senses, supply_v: float, now_s: float, settings: Settings) -> Senses:
+def _watch_supply(senses: Senses, supply_v: float, now_s: float, settings: RelaySettings) -> Senses:
     """Call the supply low below one threshold, and good again after some time above a higher one."""
     if supply_v < settings.brown_out_v:
         return senses._replace(supply_low=True, good_s=math.inf)

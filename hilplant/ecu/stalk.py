@@ -31,16 +31,16 @@ class Move(NamedTuple):
     press: str | None = None
 
 
-class Turn(NamedTuple):
+class StalkTurn(NamedTuple):
     """A movement at a time [s]."""
 
     time_s: float
     move: Move
 
 
-def parse_stalk(text: str) -> tuple[Turn, ...]:
+def parse_stalk(text: str) -> tuple[StalkTurn, ...]:
     """Read a sequence such as ``0:off,1:slow,6:intermittent3,20:off,22:flick``: times [s] must rise."""
-    turns: list[Turn] = []
+    turns: list[StalkTurn] = []
     for number, entry in enumerate(text.split(","), start=1):
         place = f"stalk sequence, entry {number} '{entry.strip()}'"
         turn = _parse_entry(place, entry)
@@ -50,7 +50,7 @@ def parse_stalk(text: str) -> tuple[Turn, ...]:
     return tuple(turns)
 
 
-def _parse_entry(place: str, entry: str) -> Turn:
+def _parse_entry(place: str, entry: str) -> StalkTurn:
     time, colon, position = entry.partition(":")
     try:
         time_s = float(time)
@@ -61,7 +61,7 @@ def _parse_entry(place: str, entry: str) -> Turn:
     move = move_named(position)
     if move is None:
         raise StalkError(f"{place}: position must be {wanted()}")
-    return Turn(time_s, move)
+    return StalkTurn(time_s, move)
 
 
 def wanted() -> str:
@@ -85,7 +85,7 @@ def move_named(text: str) -> Move | None:
     return Move(Master[word.upper()] if word else None, interval)
 
 
-def stalk_at(turns: tuple[Turn, ...], elapsed_s: float) -> Stalk:
+def stalk_at(turns: tuple[StalkTurn, ...], elapsed_s: float) -> Stalk:
     """Return the stalk at a time [s] since the start: off and pause 1 before the first movement."""
     stalk = Stalk()
     for turn in turns:

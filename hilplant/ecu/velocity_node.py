@@ -20,7 +20,7 @@ _SPEED, _CURRENT, _CONTACT = _HEARD
 _ON, _FAST, _SUPPLY = (INPUT_INDEX[name] for name in ("relay_on", "relay_fast", "supply_v"))
 
 
-class Report(NamedTuple):
+class VelocityReport(NamedTuple):
     """What the node did at one moment, for whoever watches."""
 
     time_s: float
@@ -45,7 +45,7 @@ class VelocityNode:
         commands = [message for message in sent if {_ON, _FAST, _SUPPLY} & set(message.sources)]
         _demand(heard, commands)
         self.seat = seat
-        self.report: Callable[[Report], None] | None = None
+        self.report: Callable[[VelocityReport], None] | None = None
         self._commands = [signal.default for signal in INPUTS]
         self._speed_frames = {message.identifier for message in heard if _SPEED in message.targets}
         self._fresh = False
@@ -72,7 +72,7 @@ class VelocityNode:
         self._node.send(now_ns, self._commands)
         if self.report is not None:
             wanted = self.seat.reference(now_s)
-            self.report(Report(now_s, wanted, measured, command, self._node.lost))
+            self.report(VelocityReport(now_s, wanted, measured, command, self._node.lost))
         return command
 
     def release(self) -> None:

@@ -33,7 +33,7 @@ class Stalk(NamedTuple):
         return self.master is not Master.OFF or self.flick or self.wash
 
 
-class Inputs(NamedTuple):
+class EcuInputs(NamedTuple):
     """One look at the world: `park_contact` is None, and a number nan, while it is not known."""
 
     stalk: Stalk
@@ -42,14 +42,14 @@ class Inputs(NamedTuple):
     supply_v: float = math.nan
 
 
-class Relays(NamedTuple):
+class RelayCommand(NamedTuple):
     """The command to the plant: ON/OFF relay and FAST/SLOW relay."""
 
     on: bool
     fast: bool
 
 
-RELAYS_OFF = Relays(False, False)
+RELAYS_OFF = RelayCommand(False, False)
 
 
 class Fault(Enum):
@@ -66,7 +66,7 @@ class Fault(Enum):
     STALK_LOST = "stalk_lost"  # the stalk's message stays away; the node finds this, not the controller
 
 
-class Settings(NamedTuple):
+class RelaySettings(NamedTuple):
     """Times and thresholds; `docs/ecu.md` tells where each comes from.
 
     `rests_open` says that the wiper rests outside the park window, as the depressed circuit leaves it.

@@ -16,10 +16,10 @@ from hilplant.failure import Failure
 from hilplant.identify.experiment import Run
 from hilplant.identify.local_search import Solution
 from hilplant.identify.parameters import Choice, search_space
-from hilplant.identify.residuals import Problem, directions
+from hilplant.identify.residuals import LeastSquares, directions
 from hilplant.identify.run_of_data import make_run
-from hilplant.identify.twin import CLEAN, Condition, played, spoilt
-from hilplant.identify.uncertainty import LEAST, NORMAL_95, Verdict
+from hilplant.identify.twin import CLEAN, TwinCondition, played, spoilt
+from hilplant.identify.uncertainty import LEAST, NORMAL_95, Identifiability
 from hilplant.measurements.measurement import Samples
 from hilplant.models.load import LOADS
 from hilplant.models.records import PARAMETER_INDEX
@@ -37,7 +37,7 @@ class Experiment(NamedTuple):
     """Something that could be recorded or measured beside what there is."""
 
     text: str
-    conditions: tuple[Condition, ...] = ()
+    conditions: tuple[TwinCondition, ...] = ()
     force_factor: float = 1.0
     linkage: bool = True
     force_known: bool = False
@@ -50,19 +50,19 @@ class Advice(NamedTuple):
     tells: tuple[str, ...]
 
 
-_BOTH = (Condition(False, 0.0, _VOLTS), Condition(True, 1.0, _VOLTS))
+_BOTH = (TwinCondition(False, 0.0, _VOLTS), TwinCondition(True, 1.0, _VOLTS))
 _SINGLE = (
-    Experiment("starts at 8, 12, 16 V, slow on a dry screen", (Condition(False, 0.0, _VOLTS),)),
-    Experiment("starts at 8, 12, 16 V, fast on a dry screen", (Condition(True, 0.0, _VOLTS),)),
-    Experiment("starts at 8, 12, 16 V, slow on a wet screen", (Condition(False, 1.0, _VOLTS),)),
-    Experiment("starts at 8, 12, 16 V, fast on a wet screen", (Condition(True, 1.0, _VOLTS),)),
+    Experiment("starts at 8, 12, 16 V, slow on a dry screen", (TwinCondition(False, 0.0, _VOLTS),)),
+    Experiment("starts at 8, 12, 16 V, fast on a dry screen", (TwinCondition(True, 0.0, _VOLTS),)),
+    Experiment("starts at 8, 12, 16 V, slow on a wet screen", (TwinCondition(False, 1.0, _VOLTS),)),
+    Experiment("starts at 8, 12, 16 V, fast on a wet screen", (TwinCondition(True, 1.0, _VOLTS),)),
     Experiment("starts, slow and dry, fast and wet, with the arm's force doubled by a known weight", _BOTH, 2.0),
     Experiment("the motor without linkage, slow and fast, at 8, 12, 16 V", _BOTH, linkage=False),
 )
 _FORCE = Experiment("the arm's force, with a spring balance to 2 %", force_known=True)
 
 
-def advice(bench: Bench, solution: Solution, said: Sequence[Verdict]) -> list[Advice]:
+def advice(bench: Bench, solution: Solution, said: Sequence[Identifiability]) -> list[Advice]:
     """Return the experiments that would tell something more, each alone, and each together with the arm's force."""
     untold = {verdict.name for verdict in said if not verdict.told}
     if not untold:
@@ -117,7 +117,7 @@ def _rows_of(bench: Bench, solution: Solution, what: Experiment) -> Matrix | Non
         runs = _imagined(bench, choice.base_row, what)
     except Failure:
         return None  # the wiper does not come round
-    own = Problem(runs, choice, problem.tables, problem.noise, problem.scale[:count])
+    own = LeastSquares(runs, choice, problem.tables, problem.noise, problem.scale[:count])
     return _without_nuisance(own, own.start(solution.values))
 
 
@@ -129,7 +129,7 @@ def _imagined(bench: Bench, row: Samples, what: Experiment) -> list[Run]:
     return [make_run(spoilt(played(other, each), CLEAN, step_s, 0), other, each.screen) for each in what.conditions]
 
 
-def _without_nuisance(problem: Problem, x: Samples) -> Matrix:
+def _without_nuisance(problem: LeastSquares, x: Samples) -> Matrix:
     """Return the derivatives by the parameters, less what offsets and starts could explain."""
     moved = problem.moved
     jacobian = problem.jacobian(x)

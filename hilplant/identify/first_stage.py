@@ -16,7 +16,7 @@ import numpy as np
 from uncertainties import correlated_values
 
 from hilplant.failure import Failure
-from hilplant.identify.srivc import Fit, Stretch, fit
+from hilplant.identify.srivc import Stretch, TransferFit, fit
 from hilplant.identify.transfer_function import (
     Coefficients,
     Equivalent,
@@ -29,7 +29,7 @@ from hilplant.identify.transfer_function import (
 from hilplant.measurements.alignment import voltage_steps
 from hilplant.measurements.measurement import Mask, Measurement, Samples, running
 from hilplant.measurements.park import rising_edges
-from hilplant.motor_bench.bench_measurements import Friction, back_emf_constant, mean_of, no_load_friction
+from hilplant.motor_bench.bench_measurements import MotorFriction, back_emf_constant, mean_of, no_load_friction
 from hilplant.motor_bench.bench_measurements import SteadyRun as _Turn
 
 #: How much of the data is used around each step: long for the electrical time constant, short for the load [s].
@@ -44,11 +44,11 @@ class ModeResult(NamedTuple):
     """
 
     mode: str
-    fit: Fit
+    fit: TransferFit
     coefficients: Coefficients
     by_load: Equivalent
     by_park: Equivalent | None
-    load: Friction | None
+    load: MotorFriction | None
     steps: int
     turns: int
 
@@ -122,14 +122,14 @@ def _mode(data: Measurement, mode: str, windows: list[slice], turns: list[_Turn]
     return ModeResult(mode, found, named, assumed, motor, _load(turns, motor), len(windows), len(turns))
 
 
-def _sound(found: Fit) -> bool:
+def _sound(found: TransferFit) -> bool:
     """Say whether coefficients and covariance are such as a fit gives that settled."""
     values = np.array([*found.function, found.friction])
     return bool(np.all(np.isfinite(values)) and np.all(np.isfinite(found.covariance))
         and np.all(np.diag(found.covariance) > 0.0) and found.function.b1 != 0.0)  # fmt: skip
 
 
-def _load(turns: list[_Turn], motor: Equivalent) -> Friction | None:
+def _load(turns: list[_Turn], motor: Equivalent) -> MotorFriction | None:
     speeds = [turn.speed_rad_s for turn in turns]
     if max(speeds) - min(speeds) < 0.05 * max(speeds):
         return None

@@ -12,13 +12,13 @@ from hilplant.bench import Bench, load_bench
 from hilplant.failure import Failure
 from hilplant.identify.executor import Executor, here, on_cluster
 from hilplant.identify.experiment import Run
-from hilplant.identify.genetic import Settings
+from hilplant.identify.genetic import SearchSettings
 from hilplant.identify.journal import Journal
 from hilplant.identify.optimisers import optimiser
 from hilplant.identify.parameters import BY_NAME, Choice, chosen
-from hilplant.identify.result_files import Origin, write_bench
+from hilplant.identify.result_files import ResultOrigin, write_bench
 from hilplant.identify.run_of_data import make_run
-from hilplant.identify.starting_point import Known, starting_point
+from hilplant.identify.starting_point import StartingPoint, starting_point
 from hilplant.identify.three_stages import Identified, Task, identify
 from hilplant.measurements.measurement import Samples
 from hilplant.measurements.named_data import Named, read_named
@@ -54,8 +54,8 @@ class IdentifiedFiles(NamedTuple):
     """
 
     found: Identified
-    known: Known
-    origin: Origin
+    known: StartingPoint
+    origin: ResultOrigin
     notes: list[str]
     written: list[Path]
     journal: Journal
@@ -83,16 +83,16 @@ def identify_files(request: Request, on_progress: OnProgress = unseen) -> Identi
         )  # fmt: skip
         found = identify(task)
     fitted_files, held_files = (tuple((each.text, each.data) for each in named) for named in (fitted, held_out))
-    origin = Origin(fitted_files, held_files, request.date, request.seed, request.search)
+    origin = ResultOrigin(fitted_files, held_files, request.date, request.seed, request.search)
     written = write_bench(request.out, found, origin)
     notes = [note for named in fitted for note in named.notes] + list(known.notes)
     return IdentifiedFiles(found, known, origin, notes, written, journal)
 
 
-def _settings(request: Request) -> Settings:
+def _settings(request: Request) -> SearchSettings:
     if request.population < 8 or request.generations < 1:
         raise Failure("the search needs a population of 8 at least, and one generation")
-    return Settings(population=request.population, generations=request.generations)
+    return SearchSettings(population=request.population, generations=request.generations)
 
 
 def _held(bench: Bench, texts: tuple[str, ...]) -> tuple[Samples, list[str]]:

@@ -26,7 +26,7 @@ class Space(NamedTuple):
     ordered: tuple[tuple[int, int], ...] = ()
 
 
-class Settings(NamedTuple):
+class SearchSettings(NamedTuple):
     """Table 5-7. The search ends early where a cost falls below `enough`."""
 
     population: int = 40
@@ -58,7 +58,7 @@ class Outcome(NamedTuple):
 
 
 def genetic(
-    evaluate: Evaluate, space: Space, settings: Settings, seed: int, on_generation: OnGeneration = lambda _: None
+    evaluate: Evaluate, space: Space, settings: SearchSettings, seed: int, on_generation: OnGeneration = lambda _: None
 ) -> Outcome:
     """Search the space; the same seed gives the same result, bit for bit."""
     random = np.random.default_rng(seed)
@@ -92,7 +92,7 @@ def first_population(random: Generator, space: Space, count: int) -> Matrix:
     return people
 
 
-def offspring(random: Generator, parents: Matrix, costs: Samples, settings: Settings, space: Space) -> Matrix:
+def offspring(random: Generator, parents: Matrix, costs: Samples, settings: SearchSettings, space: Space) -> Matrix:
     """Return two children of each pair of tournament winners until the population is full again."""
     wanted, genes = settings.population - len(parents), parents.shape[1]
     children = np.empty((wanted + wanted % 2, genes))
@@ -114,7 +114,7 @@ def _winner(random: Generator, costs: Samples, contenders: int) -> int:
     return int(drawn[np.argmin(costs[drawn])])
 
 
-def mutate(random: Generator, people: Matrix, settings: Settings, space: Space) -> NDArray[np.bool_]:
+def mutate(random: Generator, people: Matrix, settings: SearchSettings, space: Space) -> NDArray[np.bool_]:
     """Give random genes new values; those drawn among the elite keep theirs. Returns who changed."""
     changed = np.zeros(len(people), dtype=np.bool_)
     genes = people.shape[1]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from hilplant.identify.parameters import search_space
-from hilplant.identify.residuals import Noise, Problem, directions
+from hilplant.identify.residuals import LeastSquares, ResidualNoise, directions
 from hilplant.measurements.measurement import Samples
 
 Matrix = NDArray[np.float64]
@@ -31,7 +31,7 @@ class Solution(NamedTuple):
     """
 
     x: Samples
-    problem: Problem
+    problem: LeastSquares
     residuals: Samples
     jacobian: Matrix
     evaluations: int
@@ -46,12 +46,12 @@ class Solution(NamedTuple):
         return self.problem.values(self.x)
 
     @property
-    def noise(self) -> Noise:
+    def noise(self) -> ResidualNoise:
         """What is left: root mean square of current [A] and of edge times [s]."""
         return left_over(self.problem, self.residuals)
 
 
-def search(problem: Problem, values: Samples, told: Callable[[float], None] = lambda _: None) -> Solution:
+def search(problem: LeastSquares, values: Samples, told: Callable[[float], None] = lambda _: None) -> Solution:
     """Search from parameter values, within (5.22) about them; weights follow what is left over.
 
     The width of its bounds ties each parameter weakly to where it began: what the data say nothing of stays there
@@ -85,17 +85,17 @@ def search(problem: Problem, values: Samples, told: Callable[[float], None] = la
     return Solution(x, problem, residuals, jacobian, evaluations, low, high, ordered, settled)
 
 
-def _weights(left: Noise, expected: Noise) -> Noise:
+def _weights(left: ResidualNoise, expected: ResidualNoise) -> ResidualNoise:
     """Return weights for what is left over; an edge is never surer than its rounding."""
-    return Noise(max(left.current_a, 0.3 * expected.current_a), max(left.edge_s, expected.edge_s))
+    return ResidualNoise(max(left.current_a, 0.3 * expected.current_a), max(left.edge_s, expected.edge_s))
 
 
-def _close(one: Noise, other: Noise) -> bool:
+def _close(one: ResidualNoise, other: ResidualNoise) -> bool:
     ratios = np.array(one) / np.array(other)
     return bool(np.all(ratios < CLOSE) and np.all(ratios > 1.0 / CLOSE))
 
 
-def _at_bounds(problem: Problem, x: Samples, low: Samples, high: Samples) -> list[str]:
+def _at_bounds(problem: LeastSquares, x: Samples, low: Samples, high: Samples) -> list[str]:
     """Name the parameters that stand at a bound which is not one of nature."""
     names = []
     for place, parameter in enumerate(problem.choice.parameters):
@@ -110,7 +110,9 @@ def _at_bounds(problem: Problem, x: Samples, low: Samples, high: Samples) -> lis
     return names
 
 
-def _about(problem: Problem, x: Samples, bounds: tuple[Samples, Samples], names: list[str]) -> tuple[Samples, Samples]:
+def _about(
+    problem: LeastSquares, x: Samples, bounds: tuple[Samples, Samples], names: list[str]
+) -> tuple[Samples, Samples]:
     """Take the bounds of some parameters by (5.22) about where they are now."""
     low, high = (bound.copy() for bound in bounds)
     new_low, new_high = search_space(problem.choice, problem.values(x))
@@ -120,11 +122,11 @@ def _about(problem: Problem, x: Samples, bounds: tuple[Samples, Samples], names:
     return low, high
 
 
-def left_over(problem: Problem, residuals: Samples) -> Noise:
+def left_over(problem: LeastSquares, residuals: Samples) -> ResidualNoise:
     """Return the root mean square of current errors [A] and of edge errors [s]."""
     currents = np.concatenate([residuals[current] for current, _ in problem.parts()])
     edges = np.concatenate([residuals[edge] for _, edge in problem.parts()])
-    return Noise(
+    return ResidualNoise(
         float(np.sqrt(np.mean(currents**2))) * problem.noise.current_a,
         float(np.sqrt(np.mean(edges**2))) * problem.noise.edge_s,
     )
@@ -133,7 +135,7 @@ def left_over(problem: Problem, residuals: Samples) -> Noise:
 class _Tied:
     """The problem with a weak tie of each parameter to its start; counts simulations."""
 
-    def __init__(self, problem: Problem, begin: Samples, bounds: tuple[Samples, Samples]) -> None:
+    def __init__(self, problem: LeastSquares, begin: Samples, bounds: tuple[Samples, Samples]) -> None:
         self.problem, self.begin, self.bounds = problem, begin, bounds
         self.evaluations = 0
         self.basis: Matrix | None = None

@@ -10,10 +10,10 @@ from collections.abc import Callable
 import numpy as np
 
 from hilplant.failure import Failure
-from hilplant.identify.genetic import Evaluate, Generation, OnGeneration, Outcome, Settings, Space, genetic
+from hilplant.identify.genetic import Evaluate, Generation, OnGeneration, Outcome, SearchSettings, Space, genetic
 from hilplant.measurements.measurement import Samples
 
-Search = Callable[[Evaluate, Space, Settings, int, OnGeneration], Outcome]
+Search = Callable[[Evaluate, Space, SearchSettings, int, OnGeneration], Outcome]
 
 
 class _Watched:
@@ -40,13 +40,13 @@ class _Watched:
         return Outcome(self.best, self.cost, tuple(self.history))
 
 
-def budget(settings: Settings) -> int:
+def budget(settings: SearchSettings) -> int:
     """Return how many evaluations the others may make: what the genetic algorithm would make at most."""
     return settings.population * (settings.generations + 1)
 
 
 def evolution_strategy(
-    evaluate: Evaluate, space: Space, settings: Settings, seed: int, on_generation: OnGeneration
+    evaluate: Evaluate, space: Space, settings: SearchSettings, seed: int, on_generation: OnGeneration
 ) -> Outcome:
     """Search by covariance matrix adaptation (package cma), started anew with another seed where it settles early.
 
@@ -77,7 +77,7 @@ def evolution_strategy(
 
 
 def differential_evolution(
-    evaluate: Evaluate, space: Space, settings: Settings, seed: int, on_generation: OnGeneration
+    evaluate: Evaluate, space: Space, settings: SearchSettings, seed: int, on_generation: OnGeneration
 ) -> Outcome:
     """Search by differential evolution (scipy). It does not keep the order (3.32)."""
     from scipy.optimize import differential_evolution as scipy_search

@@ -19,7 +19,7 @@ from hilplant.models.records import PARAMETER_INDEX
 FACTOR, WIDE_FACTOR = 2.0, 4.0
 
 
-class Link(NamedTuple):
+class CoupledParameter(NamedTuple):
     """A place in the row that keeps its ratio to a parameter; `ratio` where the bench has no value to take it from."""
 
     name: str
@@ -38,7 +38,7 @@ class Parameter(NamedTuple):
     place: int
     factor: float
     usual: float
-    links: tuple[Link, ...] = ()
+    links: tuple[CoupledParameter, ...] = ()
     highest: float = np.inf
     signed: bool = False
 
@@ -60,14 +60,29 @@ _FRICTION = (
     Parameter("mu_dry_1", "", _FRICTION_AT["dry_1"], WIDE_FACTOR, 0.25),
     Parameter("mu_dry_2", "s/mm", _FRICTION_AT["dry_2"], WIDE_FACTOR, 0.1),
     Parameter(
-        "mu_dry_3", "", _FRICTION_AT["dry_3"], WIDE_FACTOR, 0.75, (Link("mu_dry_4", _FRICTION_AT["dry_4"], 10.0),)
+        "mu_dry_3",
+        "",
+        _FRICTION_AT["dry_3"],
+        WIDE_FACTOR,
+        0.75,
+        (CoupledParameter("mu_dry_4", _FRICTION_AT["dry_4"], 10.0),),
     ),
     Parameter(
-        "mu_wet_1", "", _FRICTION_AT["wet_1"], WIDE_FACTOR, 0.6, (Link("mu_wet_2", _FRICTION_AT["wet_2"], 10.0),)
+        "mu_wet_1",
+        "",
+        _FRICTION_AT["wet_1"],
+        WIDE_FACTOR,
+        0.6,
+        (CoupledParameter("mu_wet_2", _FRICTION_AT["wet_2"], 10.0),),
     ),
     Parameter("mu_wet_3", "s/mm", _FRICTION_AT["wet_3"], WIDE_FACTOR, 0.01),
     Parameter(
-        "mu_wet_4", "", _FRICTION_AT["wet_4"], WIDE_FACTOR, 1.0, (Link("mu_wet_5", _FRICTION_AT["wet_5"], 10.0),)
+        "mu_wet_4",
+        "",
+        _FRICTION_AT["wet_4"],
+        WIDE_FACTOR,
+        1.0,
+        (CoupledParameter("mu_wet_5", _FRICTION_AT["wet_5"], 10.0),),
     ),
     Parameter("mu_wet_6", "s/mm", _FRICTION_AT["wet_6"], WIDE_FACTOR, 2e-4),
     Parameter("mu_wet_7", "1/N", _FRICTION_AT["wet_7"], WIDE_FACTOR, 0.025, signed=True),
@@ -78,7 +93,7 @@ _FORCE = Parameter(
     PARAMETER_INDEX["load.left_blade.force_n"],
     FACTOR,
     7.6,
-    (Link("right_force_n", PARAMETER_INDEX["load.right_blade.force_n"], 1.0),),
+    (CoupledParameter("right_force_n", PARAMETER_INDEX["load.right_blade.force_n"], 1.0),),
 )
 
 #: The seventeen of (5.1) and (5.23), in that order. What (5.1) calls mu_wet_2 is mu_wet_3 of (4.50).

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.identify.local_search import Solution
-from hilplant.identify.uncertainty import NORMAL_95, RISE_95, Spread, Verdict
+from hilplant.identify.uncertainty import NORMAL_95, RISE_95, Identifiability, Spread
 from hilplant.measurements.measurement import Mask, Samples
 
 Matrix = NDArray[np.float64]
@@ -28,26 +28,26 @@ LOOSE = 0.25
 HANGS = 1.05
 
 
-class Interval(NamedTuple):
+class ConfidenceInterval(NamedTuple):
     """95 % interval; a side is None where the search space ends before the data speak against the value."""
 
     low: float | None
     high: float | None
 
 
-def profile(solution: Solution, known: Spread, said: Sequence[Verdict]) -> list[Interval]:
+def profile(solution: Solution, known: Spread, said: Sequence[Identifiability]) -> list[ConfidenceInterval]:
     """Return the 95 % interval of each parameter; without sides where the data do not tell it.
 
     The rise is wanted to be that of chi-square with one degree of freedom, times the widening by correlated errors.
     """
     told = [place for place, verdict in enumerate(said) if verdict.told]
-    intervals = [Interval(None, None)] * len(said)
+    intervals = [ConfidenceInterval(None, None)] * len(said)
     if not told:
         return intervals
     walk = _Walk(solution, known, told)
     ends = np.where(walk.hangs(), walk.first_order(), walk.ends())
     for row, place in enumerate(told):
-        intervals[place] = Interval(_finite(ends[row]), _finite(ends[row + len(told)]))
+        intervals[place] = ConfidenceInterval(_finite(ends[row]), _finite(ends[row + len(told)]))
     return intervals
 
 

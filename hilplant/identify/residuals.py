@@ -25,21 +25,21 @@ SLOWEST_PART = 0.3
 MOST_OFFSET_A = 0.1
 
 
-class Noise(NamedTuple):
+class ResidualNoise(NamedTuple):
     """Standard deviations by which residuals are weighted: current [A], time of a park edge [s]."""
 
     current_a: float
     edge_s: float
 
 
-class Problem:
+class LeastSquares:
     """Runs and parameters as one vector of unknowns: parameters, then offset and start of each run, all scaled.
 
     Unknown x stands for `scale` x. Residuals have standard deviation 1 where the model is right.
     """
 
     def __init__(
-        self, runs: Sequence[Run], choice: Choice, tables: NDArray[np.float64], noise: Noise, scale: Samples
+        self, runs: Sequence[Run], choice: Choice, tables: NDArray[np.float64], noise: ResidualNoise, scale: Samples
     ) -> None:
         self.runs, self.choice, self.tables, self.noise = tuple(runs), choice, tables, noise
         starts = [0.1 * (run.start.high - run.start.low) for run in runs]
@@ -62,13 +62,13 @@ class Problem:
         """Return the parameters' values."""
         return np.asarray((x * self.scale)[: self.parameters], np.float64)
 
-    def with_noise(self, noise: Noise) -> "Problem":
+    def with_noise(self, noise: ResidualNoise) -> "LeastSquares":
         """Return the same problem with other weights; unknowns keep their scales."""
-        other = Problem(self.runs, self.choice, self.tables, noise, self.scale[: self.parameters])
+        other = LeastSquares(self.runs, self.choice, self.tables, noise, self.scale[: self.parameters])
         other.scale = self.scale
         return other
 
-    def localised(self, x: Samples) -> "Problem":
+    def localised(self, x: Samples) -> "LeastSquares":
         """Return the same problem with the crank's speed at each edge as the model has it at `x`.
 
         A mean speed serves until then: far from the solution the model may stand still at an edge.
@@ -81,7 +81,7 @@ class Problem:
             speeds = (phase[run.edges] - phase[run.edges - 1]) / run.period_s
             least = SLOWEST_PART * run.edge_speeds_rad_s
             runs.append(replace(run, edge_speeds_rad_s=np.maximum(speeds, least)))
-        other = Problem(runs, self.choice, self.tables, self.noise, self.scale[: self.parameters])
+        other = LeastSquares(runs, self.choice, self.tables, self.noise, self.scale[: self.parameters])
         other.scale = self.scale
         return other
 
@@ -165,8 +165,8 @@ def edge_errors_s(run: Run, phase_rad: Samples) -> Samples:
     return np.asarray((half_way - run.edge_angles_rad) / run.edge_speeds_rad_s, np.float64)
 
 
-def expected_noise(runs: Sequence[Run]) -> Noise:
+def expected_noise(runs: Sequence[Run]) -> ResidualNoise:
     """Return weights to begin with: the current's restlessness from sample to sample, and a park edge's rounding."""
     changes = np.concatenate([np.diff(run.current_a, n=2)[run.valid[1:-1]] for run in runs])
     current_a = 1.4826 * float(np.median(np.abs(changes))) / np.sqrt(6.0)
-    return Noise(max(current_a, 1e-3), max(run.period_s for run in runs) / np.sqrt(12.0))
+    return ResidualNoise(max(current_a, 1e-3), max(run.period_s for run in runs) / np.sqrt(12.0))

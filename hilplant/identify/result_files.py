@@ -15,7 +15,7 @@ from hilplant.models.records import Motor, Parameters
 from hilplant.models.row import unpack
 
 
-class Origin(NamedTuple):
+class ResultOrigin(NamedTuple):
     """What the files say of where they come from."""
 
     fitted: tuple[tuple[str, Measurement], ...]  # as they were named, with @dry, @wet ...
@@ -25,7 +25,7 @@ class Origin(NamedTuple):
     search: str
 
 
-def write_bench(out: Path, found: Identified, origin: Origin) -> list[Path]:
+def write_bench(out: Path, found: Identified, origin: ResultOrigin) -> list[Path]:
     """Write OUT.yaml, OUT.motor.yaml and OUT.screen.yaml; they are said to be identified, with intervals."""
     bench = found.task.bench
     record = unpack(Parameters, found.row)
@@ -43,7 +43,7 @@ def write_bench(out: Path, found: Identified, origin: Origin) -> list[Path]:
     return list(written)
 
 
-def _facts(found: Identified, origin: Origin) -> dict[str, Any]:
+def _facts(found: Identified, origin: ResultOrigin) -> dict[str, Any]:
     """Return what the files carry beside their numbers."""
     left = found.solution.noise
     facts: dict[str, Any] = {

@@ -12,7 +12,7 @@ from typing import NamedTuple
 REST_S = 1.0
 
 
-class Stage(NamedTuple):
+class SequenceStage(NamedTuple):
     """Voltage and mode until the park contact has closed `edges` times, or for `longest_s` at most.
 
     With 0 edges it simply lasts `longest_s`.
@@ -34,19 +34,19 @@ class Player(NamedTuple):
     contact: bool = True  # an edge counts only after the contact was seen open
 
 
-OFF = Stage(False, False, 0.0, 0, REST_S)
+OFF = SequenceStage(False, False, 0.0, 0, REST_S)
 
 
-def figure_5_4(voltages_v: Sequence[float] = (10.0, 12.0, 14.0, 16.0), longest_s: float = 10.0) -> list[Stage]:
+def figure_5_4(voltages_v: Sequence[float] = (10.0, 12.0, 14.0, 16.0), longest_s: float = 10.0) -> list[SequenceStage]:
     """Return the published sequence: each voltage for one turn, all in slow mode, then all in fast mode, then off."""
     first = voltages_v[0] if voltages_v else 0.0
-    stages = [Stage(True, fast, volts, 1, longest_s) for fast in (False, True) for volts in voltages_v]
+    stages = [SequenceStage(True, fast, volts, 1, longest_s) for fast in (False, True) for volts in voltages_v]
     return [OFF._replace(voltage_v=first), *stages, OFF._replace(voltage_v=first)]
 
 
 def informative(
     voltages_v: Sequence[float] = (10.0, 12.0, 14.0, 16.0), turns: int = 2, longest_s: float = 10.0
-) -> list[Stage]:
+) -> list[SequenceStage]:
     """Return a sequence that tells more: switching on from rest at each voltage in both modes, and a step in motion.
 
     A start from rest has no back-EMF, so its first milliseconds show resistance and inductance alone; what follows
@@ -60,13 +60,13 @@ def informative(
             other = highest if volts < 0.5 * (lowest + highest) else lowest
             stages += [
                 OFF._replace(fast=fast, voltage_v=volts),
-                Stage(True, fast, volts, turns, longest_s),
-                Stage(True, fast, other, 1, longest_s),
+                SequenceStage(True, fast, volts, turns, longest_s),
+                SequenceStage(True, fast, other, 1, longest_s),
             ]
     return [*stages, OFF._replace(voltage_v=lowest)]
 
 
-def advance(player: Player, stages: Sequence[Stage], contact: bool, now_s: float) -> Player:
+def advance(player: Player, stages: Sequence[SequenceStage], contact: bool, now_s: float) -> Player:
     """Take one look at the park contact; return where the sequence stands. At the end the place is past the last."""
     if player.place >= len(stages):
         return player
@@ -77,7 +77,9 @@ def advance(player: Player, stages: Sequence[Stage], contact: bool, now_s: float
     return Player(player.place + 1, now_s, 0, contact) if done else player
 
 
-def play(stages: Sequence[Stage], step_s: float, contact_after: Callable[[Stage], bool]) -> list[tuple[float, Stage]]:
+def play(
+    stages: Sequence[SequenceStage], step_s: float, contact_after: Callable[[SequenceStage], bool]
+) -> list[tuple[float, SequenceStage]]:
     """Run a sequence in virtual time; `contact_after` lets the plant take one step and gives its park contact.
 
     Returns when each stage began [s], and at the end the stage in which nothing is on any more.
@@ -93,7 +95,7 @@ def play(stages: Sequence[Stage], step_s: float, contact_after: Callable[[Stage]
     return [*begun, (tick * step_s, stages[-1])]
 
 
-def scenario_text(begun: Sequence[tuple[float, Stage]], title: str) -> str:
+def scenario_text(begun: Sequence[tuple[float, SequenceStage]], title: str) -> str:
     """Return a scenario file with the instants at which a bench came to each stage."""
     signals: dict[str, list[tuple[float, str]]] = {"relay_on": [], "relay_fast": [], "supply_v": []}
     for time_s, stage in begun[:-1]:

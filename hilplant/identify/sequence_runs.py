@@ -10,12 +10,15 @@ import numpy as np
 
 from hilplant.atomic_write import write_text
 from hilplant.failure import Failure
-from hilplant.identify.sequence import Player, Stage, advance, figure_5_4, informative, play, scenario_text
+from hilplant.identify.sequence import Player, SequenceStage, advance, figure_5_4, informative, play, scenario_text
 
-SEQUENCES: dict[str, Callable[[Sequence[float]], list[Stage]]] = {"figure-5-4": figure_5_4, "informative": informative}
+SEQUENCES: dict[str, Callable[[Sequence[float]], list[SequenceStage]]] = {
+    "figure-5-4": figure_5_4,
+    "informative": informative,
+}
 
 
-def stages_of(kind: str, voltages: str) -> list[Stage]:
+def stages_of(kind: str, voltages: str) -> list[SequenceStage]:
     """Return a sequence by its name and its voltages as text, such as "10,12,14,16".
 
     Raises
@@ -35,7 +38,7 @@ def stages_of(kind: str, voltages: str) -> list[Stage]:
     return SEQUENCES[kind](volts)
 
 
-def write_scenario(bench_name: str, stages: Sequence[Stage], out: Path) -> str:
+def write_scenario(bench_name: str, stages: Sequence[SequenceStage], out: Path) -> str:
     """Play a sequence with a bench's plant; write what it was told as a scenario, and return one line about it."""
     from hilplant.bench import load_bench
     from hilplant.models.plant import tick
@@ -45,7 +48,7 @@ def write_scenario(bench_name: str, stages: Sequence[Stage], out: Path) -> str:
     bench = load_bench(bench_name)
     state, inputs, outputs = bench.state_row.copy(), bench.input_row.copy(), np.zeros(len(OUTPUTS))
 
-    def contact_after(stage: Stage) -> bool:
+    def contact_after(stage: SequenceStage) -> bool:
         for name, value in (("relay_on", stage.on), ("relay_fast", stage.fast), ("supply_v", stage.voltage_v)):
             inputs[INPUT_INDEX[name]] = float(value)
         tick(state, inputs, bench.parameter_row, bench.tables, outputs)
@@ -57,14 +60,16 @@ def write_scenario(bench_name: str, stages: Sequence[Stage], out: Path) -> str:
     return f"{out}: {len(begun) - 1} stages, {begun[-1][0]:.4g} s; hilplant simulate {bench_name} {out} --out data.csv"
 
 
-def _refuse_stuck(begun: Sequence[tuple[float, Stage]]) -> None:
+def _refuse_stuck(begun: Sequence[tuple[float, SequenceStage]]) -> None:
     for (start_s, stage), (end_s, _) in pairwise(begun):
         if stage.edges and end_s - start_s >= stage.longest_s - 1e-9:
             text = f"the wiper does not come to park {stage.edges} times in {stage.longest_s:g} s"
             raise Failure(f"{text} at {stage.voltage_v:g} V; it is too weak there, so take higher --volts")
 
 
-def play_on_bus(bench_name: str, stages: Sequence[Stage], channel: str | None, tell: Callable[[str], None]) -> None:
+def play_on_bus(
+    bench_name: str, stages: Sequence[SequenceStage], channel: str | None, tell: Callable[[str], None]
+) -> None:
     """Command a rig through a bench's mapping: relays and supply are sent, the park contact is read.
 
     At the end, and on SIGTERM and Ctrl-C, the relays are released. A silent park switch ends the sequence.
@@ -112,7 +117,7 @@ class Rig:
     def __init__(self, node: Any, values: list[float], places: list[int], park: int) -> None:
         self.node, self.values, self.places, self.park = node, values, places, park
 
-    def command(self, stage: Stage, now_ns: int) -> None:
+    def command(self, stage: SequenceStage, now_ns: int) -> None:
         """Send what a stage wants, when it is due."""
         for place, value in zip(self.places, (stage.on, stage.fast, stage.voltage_v), strict=True):
             self.values[place] = float(value)
@@ -128,7 +133,9 @@ class Rig:
 _PERIOD_NS, _SILENCE_NS = 2_000_000, 2_000_000_000
 
 
-def drive(rig: Rig, stages: Sequence[Stage], clock: Any, stop: Callable[[], bool], tell: Callable[[str], None]) -> None:
+def drive(
+    rig: Rig, stages: Sequence[SequenceStage], clock: Any, stop: Callable[[], bool], tell: Callable[[str], None]
+) -> None:
     """Go through the stages until the last has ended, or `stop` says so.
 
     Raises
@@ -155,7 +162,7 @@ def drive(rig: Rig, stages: Sequence[Stage], clock: Any, stop: Callable[[], bool
         clock.sleep_until_ns(now_ns + _PERIOD_NS)
 
 
-def _line(stage: Stage, now_s: float) -> str:
+def _line(stage: SequenceStage, now_s: float) -> str:
     what = "off" if not stage.on else f"{'fast' if stage.fast else 'slow'}, {stage.voltage_v:g} V"
     return f"{now_s:8.3f} s  {what}"
 

@@ -39,7 +39,7 @@ class Stretch(NamedTuple):
     valid: Mask
 
 
-class Fit(NamedTuple):
+class TransferFit(NamedTuple):
     """The coefficients, with their covariance in the order b1, b0, a1, a0 (, c)."""
 
     function: TransferFunction
@@ -56,7 +56,7 @@ class _Columns(NamedTuple):
     current: NDArray[np.float64]  # s y/A, y/A
 
 
-def fit(stretches: Sequence[Stretch], period_s: float, friction: bool = False) -> Fit:
+def fit(stretches: Sequence[Stretch], period_s: float, friction: bool = False) -> TransferFit:
     """Estimate the transfer function from voltage to current.
 
     Raises
@@ -208,7 +208,7 @@ def _stable(denominator: Samples) -> Samples:
 
 def _result(
     stretches: Sequence[Stretch], period_s: float, friction: bool, theta: NDArray[np.float64], count: int
-) -> Fit:
+) -> TransferFit:
     """Collect the coefficients and their covariance."""
     gradients, errors = [], []
     for place, stretch in enumerate(stretches):
@@ -221,7 +221,7 @@ def _result(
     covariance = _covariance(gradients, errors, period_s)[np.ix_(order, order)]
     function = TransferFunction(*(float(theta[index]) for index in order[:4]))
     residual_a = float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
-    return Fit(function, float(theta[4]) if friction else 0.0, covariance, residual_a, count)
+    return TransferFit(function, float(theta[4]) if friction else 0.0, covariance, residual_a, count)
 
 
 def _covariance(

@@ -12,7 +12,7 @@ from hilplant.measurements.measurement import Measurement, Samples
 from hilplant.motor_bench.bench_measurements import quantity
 
 
-class Known(NamedTuple):
+class StartingPoint(NamedTuple):
     """Values about which the search space is laid by (5.22), what stage 1 itself found, and how it went."""
 
     values: Samples
@@ -20,7 +20,7 @@ class Known(NamedTuple):
     notes: tuple[str, ...]
 
 
-def starting_point(measurements: Sequence[Measurement], choice: Choice, gear_ratio: float) -> Known:
+def starting_point(measurements: Sequence[Measurement], choice: Choice, gear_ratio: float) -> StartingPoint:
     """Ask stage 1 about each mode; where it cannot say, and for friction and force, the bench says what is known.
 
     Stage 1 does not tell the damping from the load, so nothing is taken as known of it.
@@ -42,7 +42,7 @@ def starting_point(measurements: Sequence[Measurement], choice: Choice, gear_rat
     missing = [name for name in choice.names if name.endswith(("_ohm", "_henry", "_v_s")) and name not in motor]
     if missing:
         notes.append(f"the search begins about the bench's own {', '.join(missing)}")
-    return Known(values, motor, tuple(notes))
+    return StartingPoint(values, motor, tuple(notes))
 
 
 def _motor(found: dict[str, ModeResult]) -> dict[str, float]:

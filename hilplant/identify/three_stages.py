@@ -13,19 +13,19 @@ from hilplant.identify.cost import Cost, cost_of
 from hilplant.identify.executor import Executor, evaluator, here
 from hilplant.identify.experiment import Run
 from hilplant.identify.forces import FrictionForce, friction_forces
-from hilplant.identify.genetic import Evaluate, Generation, OnGeneration, Outcome, Settings, Space, order_of
+from hilplant.identify.genetic import Evaluate, Generation, OnGeneration, Outcome, SearchSettings, Space, order_of
 from hilplant.identify.local_search import Solution, search
 from hilplant.identify.optimisers import budget, optimiser
 from hilplant.identify.parameters import Choice, search_space
-from hilplant.identify.profile import Interval, profile
-from hilplant.identify.residuals import Problem, expected_noise
-from hilplant.identify.uncertainty import Spread, Verdict, spread, verdicts
+from hilplant.identify.profile import ConfidenceInterval, profile
+from hilplant.identify.residuals import LeastSquares, expected_noise
+from hilplant.identify.uncertainty import Identifiability, Spread, spread, verdicts
 from hilplant.identify.validation import EXPLAINED, Comparison, compare
 from hilplant.measurements.measurement import Samples
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.progress import OnProgress, ProgressReport, unseen
 
-_TABLE_5_7 = Settings()
+_TABLE_5_7 = SearchSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Task:
     choice: Choice
     about: Samples
     held_out: Sequence[Run] = ()
-    settings: Settings = _TABLE_5_7
+    settings: SearchSettings = _TABLE_5_7
     seed: int = 0
     search: str = "genetic"
     ordered: bool = True
@@ -75,8 +75,8 @@ class Identified(NamedTuple):
     outcome: Outcome
     solution: Solution
     known: Spread
-    verdicts: list[Verdict]
-    intervals: list[Interval]
+    verdicts: list[Identifiability]
+    intervals: list[ConfidenceInterval]
     forces: list[FrictionForce]
     advice: list[Advice]
     row: Samples
@@ -154,7 +154,7 @@ def refined(task: Task, outcome: Outcome) -> Solution:
     usual = np.array([parameter.usual for parameter in task.choice.parameters])
     for values in _starts(task, outcome):
         scale = np.maximum(np.abs(values), 0.01 * usual)
-        problem = Problem(task.runs, task.choice, task.bench.tables, expected, scale)
+        problem = LeastSquares(task.runs, task.choice, task.bench.tables, expected, scale)
         solutions.append(search(problem, values, refined_to))
         if solutions[-1].noise.current_a < EXPLAINED * expected.current_a:
             break

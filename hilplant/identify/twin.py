@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bench import Bench
-from hilplant.identify.sequence import OFF, Stage, play
+from hilplant.identify.sequence import OFF, SequenceStage, play
 from hilplant.measurements.measurement import Measurement, Samples
 from hilplant.models.plant import tick
 from hilplant.models.records import STATE_INDEX
@@ -43,7 +43,7 @@ class Spoiling(NamedTuple):
 CLEAN = Spoiling(0.0, 0.0)
 
 
-class Condition(NamedTuple):
+class TwinCondition(NamedTuple):
     """One recording: mode and screen throughout, each voltage from rest for one turn."""
 
     fast: bool
@@ -52,9 +52,9 @@ class Condition(NamedTuple):
     turns: int = 1
 
 
-def thesis_conditions(voltages_v: Sequence[float]) -> list[Condition]:
+def thesis_conditions(voltages_v: Sequence[float]) -> list[TwinCondition]:
     """Return slow and dry, fast and wet, as in 5.5.2."""
-    return [Condition(False, 0.0, tuple(voltages_v)), Condition(True, 1.0, tuple(voltages_v))]
+    return [TwinCondition(False, 0.0, tuple(voltages_v)), TwinCondition(True, 1.0, tuple(voltages_v))]
 
 
 class Chance(NamedTuple):
@@ -68,12 +68,12 @@ class Chance(NamedTuple):
     late_s: tuple[float, ...]
 
 
-def stages(condition: Condition, late_s: Sequence[float] = ()) -> list[Stage]:
+def stages(condition: TwinCondition, late_s: Sequence[float] = ()) -> list[SequenceStage]:
     """Return the test: each voltage is switched on at rest, and off at a park edge or so much later."""
     off = OFF._replace(longest_s=0.3, fast=condition.fast)
     parts = [off]
     for place, volts in enumerate(condition.voltages_v):
-        on = Stage(True, condition.fast, volts, condition.turns, 20.0)
+        on = SequenceStage(True, condition.fast, volts, condition.turns, 20.0)
         parts += [on, *(on._replace(edges=0, longest_s=late) for late in late_s[place : place + 1]), off]
     return parts
 
@@ -85,7 +85,7 @@ class Clean(NamedTuple):
     outputs: NDArray[np.float64]
 
 
-def chance(bench: Bench, condition: Condition, seed: int) -> Chance:
+def chance(bench: Bench, condition: TwinCondition, seed: int) -> Chance:
     """Draw where the crank rests within the park window, and how late each voltage is switched off."""
     random = np.random.default_rng([seed, 21])
     reach = bench.parameters.park_switch.half_window_rad
@@ -93,7 +93,7 @@ def chance(bench: Bench, condition: Condition, seed: int) -> Chance:
     return Chance(float(random.uniform(-reach, reach)), tuple(late.tolist()))
 
 
-def played(bench: Bench, condition: Condition, ripple: Spoiling = CLEAN, drawn: Chance | None = None) -> Clean:
+def played(bench: Bench, condition: TwinCondition, ripple: Spoiling = CLEAN, drawn: Chance | None = None) -> Clean:
     """Play a condition with a bench's plant; with nothing drawn, from the bench's own start."""
     state, inputs, outputs = bench.state_row.copy(), bench.input_row.copy(), np.zeros(len(OUTPUTS))
     if drawn is not None:
@@ -104,7 +104,7 @@ def played(bench: Bench, condition: Condition, ripple: Spoiling = CLEAN, drawn: 
     inputs[INPUT_INDEX["screen"]] = condition.screen
     step_s = bench.step_ns / SECOND_NS
 
-    def contact_after(stage: Stage) -> bool:
+    def contact_after(stage: SequenceStage) -> bool:
         swing = ripple.ripple_v * np.sin(2.0 * np.pi * ripple.ripple_hz * len(rows) * step_s)
         inputs[INPUT_INDEX["relay_on"]], inputs[INPUT_INDEX["relay_fast"]] = stage.on, stage.fast
         inputs[INPUT_INDEX["supply_v"]] = max(0.0, stage.voltage_v + swing)
@@ -117,7 +117,7 @@ def played(bench: Bench, condition: Condition, ripple: Spoiling = CLEAN, drawn: 
     return Clean(np.array(rows), np.array(made))
 
 
-def recorded(bench: Bench, condition: Condition, how: Spoiling, seed: int) -> Measurement:
+def recorded(bench: Bench, condition: TwinCondition, how: Spoiling, seed: int) -> Measurement:
     """Play a condition as a rig would have recorded it: start, switching and noise are this seed's own."""
     clean = played(bench, condition, how, chance(bench, condition, seed))
     return spoilt(clean, how, bench.step_ns / SECOND_NS, seed)

@@ -32,7 +32,7 @@ class Spread(NamedTuple):
     widening: Samples
 
 
-class Verdict(NamedTuple):
+class Identifiability(NamedTuple):
     """What the data say of one parameter, to first order; `together` are those that it cannot be told from."""
 
     name: str
@@ -69,7 +69,7 @@ def _block_sums(solution: Solution, left: Matrix) -> Matrix:
     return np.array(sums)
 
 
-def verdicts(solution: Solution, known: Spread) -> list[Verdict]:
+def verdicts(solution: Solution, known: Spread) -> list[Identifiability]:
     """Say of each parameter whether the data tell it."""
     problem = solution.problem
     count, names = problem.parameters, problem.choice.names
@@ -83,7 +83,7 @@ def verdicts(solution: Solution, known: Spread) -> list[Verdict]:
         near = [other for other in range(count) if other != place and abs(correlation[place, other]) > TOGETHER]
         together = () if told[place] else tuple(names[other] for other in near if not told[other])
         error = float(errors[place] * problem.scale[place])
-        found.append(Verdict(name, float(solution.values[place]), error, bool(told[place]), together))
+        found.append(Identifiability(name, float(solution.values[place]), error, bool(told[place]), together))
     return found
 
 

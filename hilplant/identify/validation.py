@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from hilplant.identify.experiment import Run, simulate_run
 from hilplant.identify.local_search import search
 from hilplant.identify.parameters import Choice
-from hilplant.identify.residuals import Problem, edge_errors_s, expected_noise
+from hilplant.identify.residuals import LeastSquares, edge_errors_s, expected_noise
 from hilplant.measurements.measurement import Samples
 
 
@@ -62,7 +62,7 @@ def compare(runs: Sequence[Run], row: NDArray[np.float64], tables: NDArray[np.fl
 def _compared(run: Run, row: NDArray[np.float64], tables: NDArray[np.float64]) -> Comparison:
     noise = expected_noise([run])
     nothing = np.zeros(0)
-    found = search(Problem([run], Choice([], row), tables, noise, nothing), nothing)
+    found = search(LeastSquares([run], Choice([], row), tables, noise, nothing), nothing)
     offset, start = (found.x * found.problem.scale)[:2]
     made = simulate_run(run, row[np.newaxis], np.array([start]), tables)
     current = made.current_a[0] + offset

@@ -22,7 +22,7 @@ STEP_PART = 0.05
 MOST_SHIFT_S = 0.02
 
 
-class Estimate(NamedTuple):
+class DelayEstimate(NamedTuple):
     """A value, its standard error, and from how much data it came."""
 
     value: float
@@ -30,7 +30,7 @@ class Estimate(NamedTuple):
     samples: int
 
 
-def rest_offset(values: Samples, voltage_v: Samples, period_s: float) -> Estimate | None:
+def rest_offset(values: Samples, voltage_v: Samples, period_s: float) -> DelayEstimate | None:
     """Return the mean of a channel while the motor rests with its terminals at 0 V; None when it never does.
 
     It rests while the terminal voltage has been below 2 % of the highest for `REST_S`, or since the file began: braking
@@ -43,7 +43,7 @@ def rest_offset(values: Samples, voltage_v: Samples, period_s: float) -> Estimat
     count = int(np.count_nonzero(rest))
     if count * period_s < 0.1:
         return None
-    return Estimate(float(np.mean(values[rest])), float(np.std(values[rest]) / np.sqrt(count)), count)
+    return DelayEstimate(float(np.mean(values[rest])), float(np.std(values[rest]) / np.sqrt(count)), count)
 
 
 def voltage_steps(voltage_v: Samples, period_s: float) -> list[int]:
@@ -64,7 +64,7 @@ def voltage_steps(voltage_v: Samples, period_s: float) -> list[int]:
     return [step for place, step in enumerate(steps) if place == 0 or step - steps[place - 1] > 2]
 
 
-def current_shift(current_a: Samples, voltage_v: Samples, period_s: float) -> Estimate | None:
+def current_shift(current_a: Samples, voltage_v: Samples, period_s: float) -> DelayEstimate | None:
     """Return by how much [s] the current's channel is late against the voltage's; None without three clear steps.
 
     Shift and both time constants are common to all steps; offset, drift and height are each step's own (separable
@@ -88,7 +88,7 @@ def current_shift(current_a: Samples, voltage_v: Samples, period_s: float) -> Es
     fit = least_squares(residuals, start, bounds=(low, [1.2 * MOST_SHIFT_S, np.log(0.02), np.log(1.0)]), diff_step=1e-3)
     freedom = max(1, len(fit.fun) - 3 * len(windows) - 3)
     covariance = np.linalg.pinv(fit.jac.T @ fit.jac) * float(np.sum(fit.fun**2)) / freedom
-    return Estimate(float(fit.x[0]), float(np.sqrt(covariance[0, 0])), len(steps))
+    return DelayEstimate(float(fit.x[0]), float(np.sqrt(covariance[0, 0])), len(steps))
 
 
 def _clear_steps(current_a: Samples, voltage_v: Samples, period_s: float) -> list[int]:

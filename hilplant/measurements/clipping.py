@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hilplant.measurements.measurement import Finding, Measurement, Samples
+from hilplant.measurements.measurement import DataFinding, Measurement, Samples
 
 #: How far before a plateau its slope is looked at [s], and samples that make a plateau without noise on it, with noise.
 BEFORE_S, FEWEST, FEWEST_NOISY = 0.002, 3, 8
@@ -32,7 +32,7 @@ class _Plateau(NamedTuple):
     noise: float
 
 
-def clipped(data: Measurement, native_period_s: float) -> Iterable[Finding]:
+def clipped(data: Measurement, native_period_s: float) -> Iterable[DataFinding]:
     """Find a current that runs into a limit; `native_period_s` is the distance of its own samples [s]."""
     stride = max(1, round(native_period_s / data.period_s))  # repeated values are no plateau
     current, time_s = data.current_a[::stride], data.time_s[::stride]
@@ -43,7 +43,7 @@ def clipped(data: Measurement, native_period_s: float) -> Iterable[Finding]:
             level = sign * float(np.median(np.concatenate([sign * current[hit] for hit in hits])))
             text = f"the current is cut off {name} {level:.4g} A, first at {time_s[hits[0].start]:.3f} s ({len(hits)} "
             text += "times): it left the range of clamp or logger; choose a larger range and record again"
-            yield Finding("clipped_current", text)
+            yield DataFinding("clipped_current", text)
 
 
 def _hits(values: Samples, before: int) -> list[slice]:

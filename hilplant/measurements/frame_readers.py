@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 from hilplant.failure import Failure
-from hilplant.measurements.frames import Frame, FrameSource
+from hilplant.measurements.frames import FrameSource, LoggedFrame
 
 #: Gives the values in a payload by the names of their signals; raises ValueError for a payload it cannot read.
 Reads = Callable[[bytes], Iterable[tuple[str, float]]]
@@ -41,7 +41,7 @@ class Readers:
         if j1939 and key[1]:
             self.groups.setdefault(_group(key[0]), []).append(reader)
 
-    def of(self, frame: Frame) -> Reader | None:
+    def of(self, frame: LoggedFrame) -> Reader | None:
         """Return what reads a frame, None where nothing does.
 
         Raises

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 
-class Frame(NamedTuple):
+class LoggedFrame(NamedTuple):
     """A data frame; `channel` is the bus as its log names it, "" where it names none."""
 
     time_s: float
@@ -30,7 +30,7 @@ class FrameSource(NamedTuple):
 class LoggedFrames(NamedTuple):
     """The frames of a log in its order; `notes` are complete once all frames were taken."""
 
-    frames: Iterable[Frame]
+    frames: Iterable[LoggedFrame]
     notes: list[str]
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hilplant.measurements.frames import Frame, FrameSource, LoggedFrames
+from hilplant.measurements.frames import FrameSource, LoggedFrame, LoggedFrames
 
 if TYPE_CHECKING:
     from hilplant.recording.read_logs import LogReading
@@ -28,11 +28,11 @@ def _names(source: FrameSource) -> dict[str, int]:
     return {message.name: message.frame_id | (EXTENDED * message.is_extended_frame) for message in messages}
 
 
-def _frames(log: "LogReading") -> Iterator[Frame]:
+def _frames(log: "LogReading") -> Iterator[LoggedFrame]:
     first = 1 if log.ending in (".asc", ".blf") else 0  # there python-can counts channels from 0, the files from 1
     for message in log:
         if message.is_error_frame or message.is_remote_frame:
             continue
         channel = message.channel
         named = str(channel + first) if isinstance(channel, int) else str(channel or "")
-        yield Frame(message.timestamp, message.arbitration_id, message.is_extended_id, bytes(message.data), named)
+        yield LoggedFrame(message.timestamp, message.arbitration_id, message.is_extended_id, bytes(message.data), named)

@@ -24,7 +24,7 @@ class Channel:
     held: bool = False
 
 
-class Finding(NamedTuple):
+class DataFinding(NamedTuple):
     """One thing that is wrong with a measurement: a name for programs, and a sentence for people.
 
     A `fatal` one makes identification pointless or wrong; another one is to be known.

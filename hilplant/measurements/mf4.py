@@ -14,7 +14,7 @@ import numpy as np
 from hilplant.extras import need
 from hilplant.failure import Failure
 from hilplant.measurements.channels import Channels
-from hilplant.measurements.frames import Frame, LoggedFrames
+from hilplant.measurements.frames import LoggedFrame, LoggedFrames
 from hilplant.measurements.measurement import Channel
 
 #: A file that takes longer is not read [s].
@@ -42,10 +42,10 @@ def read_mf4_frames(path: Path) -> LoggedFrames:
     return LoggedFrames(_frames(arrays), [])
 
 
-def _frames(arrays: dict[str, np.ndarray]) -> Iterator[Frame]:
+def _frames(arrays: dict[str, np.ndarray]) -> Iterator[LoggedFrame]:
     columns = (arrays[name].tolist() for name in ("time", "identifier", "extended", "length", "channel"))
     for place, (time_s, identifier, extended, length, channel) in enumerate(zip(*columns, strict=True)):
-        yield Frame(time_s, identifier, bool(extended), arrays["data"][place, :length].tobytes(), str(channel))
+        yield LoggedFrame(time_s, identifier, bool(extended), arrays["data"][place, :length].tobytes(), str(channel))
 
 
 def _arrays(path: Path, what: str) -> dict[str, np.ndarray]:

@@ -14,7 +14,7 @@ from hilplant.measurements.measurement import Samples
 DEBOUNCE_S = 0.003
 
 
-class Contact(NamedTuple):
+class ParkSignal(NamedTuple):
     """A park signal as open (0) and closed (1), and how it was told apart."""
 
     closed: Samples
@@ -23,7 +23,7 @@ class Contact(NamedTuple):
     bounces: int
 
 
-def contact(values: Samples, period_s: float, inverted: bool | None = None) -> Contact:
+def contact(values: Samples, period_s: float, inverted: bool | None = None) -> ParkSignal:
     """Tell closed from open at the middle between the signal's two levels, and remove bounces.
 
     With `inverted` None, the contact counts as closed at the level that the signal has for the smaller part of the
@@ -38,7 +38,7 @@ def contact(values: Samples, period_s: float, inverted: bool | None = None) -> C
     raw = (~high if inverted else high).astype(np.float64)
     closed = debounced(raw, max(1, round(DEBOUNCE_S / period_s)))
     bounces = (int(np.count_nonzero(np.diff(raw))) - int(np.count_nonzero(np.diff(closed)))) // 2
-    return Contact(closed, threshold, inverted, bounces)
+    return ParkSignal(closed, threshold, inverted, bounces)
 
 
 def debounced(raw: Samples, quiet: int) -> Samples:

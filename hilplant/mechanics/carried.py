@@ -42,7 +42,7 @@ class SideParts:
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class WiperSide:
     """One arm with its blade, as it sits in the mechanism.
 
     Attributes
@@ -86,7 +86,7 @@ class Side:
 class Carried:
     """What one rocker carries, before it is part of the mechanism."""
 
-    side: Side
+    side: WiperSide
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
     masses_kg: Mapping[str, float]
@@ -123,7 +123,7 @@ def carried(linkage: Linkage, name: str, side: SideParts, points: int) -> Carrie
     ends = [Rigid(rods[-1].second_end, body.first_end, _bend(rods[-1], body)) for body in rubber]
     masses = shared_by_length(rods, side.arm_mass_kg) | shared_by_length(rubber, side.blade_mass_kg)
     centre = rods[-1].second_end if not rubber else rubber[0].first_end
-    assembled = Side(
+    assembled = WiperSide(
         name=name,
         rocker=rocker,
         arm=record,

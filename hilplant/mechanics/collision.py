@@ -19,7 +19,7 @@ Line = tuple[Point, Point]
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class SweepSide:
     """One wiper: its pivot [m], its lines, and its rocker's angle at each crank angle of a turn [rad]."""
 
     pivot: Point
@@ -33,7 +33,7 @@ class Side:
         return np.asarray(complex(*self.pivot) + turned[:, np.newaxis, np.newaxis] * ends)
 
 
-def clearance(left: Side, right: Side) -> tuple[float, float]:
+def clearance(left: SweepSide, right: SweepSide) -> tuple[float, float]:
     """Return the least distance between any two lines of the sides [m], and the crank angle where [rad].
 
     Zero when lines cross. The turn is looked at where the rocker angles are given, equal steps of the crank, the
@@ -45,7 +45,7 @@ def clearance(left: Side, right: Side) -> tuple[float, float]:
     return float(distances[knot]), TURN_RAD * knot / (distances.size - 1)
 
 
-def check_clearance(left: Side, right: Side, least_m: float) -> float:
+def check_clearance(left: SweepSide, right: SweepSide, least_m: float) -> float:
     """Refuse wipers that come nearer to each other than `least_m`; return how near they come [m].
 
     Raises

@@ -7,7 +7,7 @@ import numpy as np
 from hilplant.mechanics.newton_raphson import accelerations, positions, rates
 from hilplant.mechanics.planar import Floats, Pin
 from hilplant.mechanics.turn import FOLLOWED
-from hilplant.mechanics.wiper import Side, Wiper
+from hilplant.mechanics.wiper import Wiper, WiperSide
 from hilplant.units import TURN_RAD
 
 
@@ -76,7 +76,7 @@ def _with_arms(wiper: Wiper, bare: Motion) -> Motion:
     return Motion(bare.crank_rad, *(np.concatenate(column, axis=1) for column in columns))
 
 
-def forward_sense(wiper: Wiper, side: Side) -> float:
+def forward_sense(wiper: Wiper, side: WiperSide) -> float:
     """Return the sign of the rocker's rate in the forward wipe, the half of the turn in which the arm leaves park.
 
     Park is crank angle 0, near one end of the sweep; forward leads from there to the other end.

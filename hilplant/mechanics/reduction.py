@@ -13,7 +13,7 @@ import numpy as np
 from hilplant.mechanics.coefficients import coefficient_over
 from hilplant.mechanics.motion import Motion, forward_sense
 from hilplant.mechanics.planar import Floats, Pin
-from hilplant.mechanics.wiper import Side, Wiper
+from hilplant.mechanics.wiper import Wiper, WiperSide
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +98,7 @@ def _damping(wiper: Wiper, moving: Motion) -> Curve:
     return Curve(damping * np.sum(rates**2, axis=1), damping * 2.0 * np.sum(rates * changes, axis=1))
 
 
-def _side(wiper: Wiper, moving: Motion, side: Side) -> SideCurves:
+def _side(wiper: Wiper, moving: Motion, side: WiperSide) -> SideCurves:
     angle = wiper.mechanism.angle(side.rocker)
     rocker = Curve(moving.coordinates[:, angle], moving.rates[:, angle])
     change = moving.accelerations[:, angle]
@@ -108,13 +108,13 @@ def _side(wiper: Wiper, moving: Motion, side: Side) -> SideCurves:
     return SideCurves(rocker, _drag(wiper, moving, side), _lift(wiper, side, rocker), points)
 
 
-def _radius(wiper: Wiper, side: Side, pin: Pin) -> float:
+def _radius(wiper: Wiper, side: WiperSide, pin: Pin) -> float:
     """Return how far a point of the blade is from the arm's pivot [m]; arm and blade turn about it as one body."""
     design = wiper.mechanism.design
     return float(np.linalg.norm(wiper.mechanism.point(design, pin) - wiper.mechanism.point(design, side.pivot)))
 
 
-def _lift(wiper: Wiper, side: Side, rocker: Curve) -> Curve:
+def _lift(wiper: Wiper, side: WiperSide, rocker: Curve) -> Curve:
     """Return (4.52) at an air speed of 1 m/s."""
     arm_rad = rocker.value + side.arm.offset_rad
     value, by_angle = coefficient_over(f"{side.name} blade: lift", side.air.lift, arm_rad)
@@ -122,7 +122,7 @@ def _lift(wiper: Wiper, side: Side, rocker: Curve) -> Curve:
     return Curve(pressed * value, pressed * by_angle * rocker.slope)
 
 
-def _drag(wiper: Wiper, moving: Motion, side: Side) -> Curve:
+def _drag(wiper: Wiper, moving: Motion, side: WiperSide) -> Curve:
     """Return (4.51) at an air speed of 1 m/s, acting on the blade's joint along its path in the forward wipe."""
     angle = wiper.mechanism.angle(side.rocker)
     rate, change = moving.rates[:, angle], moving.accelerations[:, angle]

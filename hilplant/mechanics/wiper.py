@@ -25,7 +25,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hilplant.mechanics.carried import Side, SideParts, carried
+from hilplant.mechanics.carried import SideParts, WiperSide, carried
 from hilplant.mechanics.coefficients import CoefficientError
 from hilplant.mechanics.design_points import GeometryError
 from hilplant.mechanics.linkage import Linkage
@@ -33,7 +33,7 @@ from hilplant.mechanics.masses import gravity_in_plane, linkage_masses, rod_iner
 from hilplant.mechanics.planar import Body, Floats, Joint, Mechanism
 from hilplant.mechanics.turn import Turn, followed
 
-__all__ = ["AIR_DENSITY_KG_M3", "Side", "SideParts", "Wiper", "WiperParts", "assemble"]
+__all__ = ["AIR_DENSITY_KG_M3", "SideParts", "Wiper", "WiperParts", "WiperSide", "assemble"]
 
 #: Mass density of air of section 4.5 [kg/m3].
 AIR_DENSITY_KG_M3 = 1.225
@@ -108,8 +108,8 @@ class Wiper:
     park_rad: float
     linkage: Mechanism
     turn: Turn
-    left: Side
-    right: Side
+    left: WiperSide
+    right: WiperSide
     air_density_kg_m3: float
     crank: str
     pivot_damping_n_m_s: float
@@ -120,7 +120,7 @@ class Wiper:
         return self.crank, self.left.rocker, self.right.rocker
 
     @property
-    def sides(self) -> tuple[Side, Side]:
+    def sides(self) -> tuple[WiperSide, WiperSide]:
         """Left and right."""
         return self.left, self.right
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from hilplant.jit import compiled
 
 
-class Motion(NamedTuple):
+class ArmatureMotion(NamedTuple):
     """Armature current [A], motor speed [rad/s], and the angle [rad] by which the shaft has turned."""
 
     current: float
@@ -24,7 +24,7 @@ class Motion(NamedTuple):
     turned: float
 
 
-class Drive(NamedTuple):
+class ArmatureDrive(NamedTuple):
     """What acts on the armature for a while, all SI, all seen at the motor shaft; an open armature has constant 0."""
 
     voltage: float
@@ -38,7 +38,7 @@ class Drive(NamedTuple):
 
 
 @compiled
-def propagator(drive: Drive, time: float) -> tuple[float, float, float, float]:
+def propagator(drive: ArmatureDrive, time: float) -> tuple[float, float, float, float]:
     """Return exp(A t) as its elements (11, 12, 21, 22), for t >= 0."""
     a11, a12 = -drive.resistance / drive.inductance, -drive.constant / drive.inductance
     a21, a22 = drive.constant / drive.inertia, -drive.damping / drive.inertia
@@ -58,7 +58,7 @@ def propagator(drive: Drive, time: float) -> tuple[float, float, float, float]:
 
 
 @compiled
-def glide(motion: Motion, drive: Drive, torque: float, time: float) -> Motion:
+def glide(motion: ArmatureMotion, drive: ArmatureDrive, torque: float, time: float) -> ArmatureMotion:
     """Return the motion after `time` while a constant `torque` [N m], less the push, works against positive speed.
 
     Exact, the turned angle too: it follows from the time integrals of (3.30), not from a rule of quadrature.
@@ -75,11 +75,11 @@ def glide(motion: Motion, drive: Drive, torque: float, time: float) -> Motion:
     speed = final_speed + e21 * i + e22 * w
     flux = drive.constant * drive.inductance * (current - motion.current)
     momentum = drive.resistance * drive.inertia * (speed - motion.speed)
-    return Motion(current, speed, motion.turned + final_speed * time - (flux + momentum) / strength)
+    return ArmatureMotion(current, speed, motion.turned + final_speed * time - (flux + momentum) / strength)
 
 
 @compiled
-def coast(motion: Motion, drive: Drive, torque: float, time: float) -> Motion:
+def coast(motion: ArmatureMotion, drive: ArmatureDrive, torque: float, time: float) -> ArmatureMotion:
     """Return the motion after `time` with the armature open: no current, J dw/dt = -d w - torque.
 
     With x = d t / J, w falls by (d w + T)/d (1 - exp(-x)); small x, down to no damping at all, take the series.
@@ -92,10 +92,10 @@ def coast(motion: Motion, drive: Drive, torque: float, time: float) -> Motion:
         first = -math.expm1(-x) / x
         second = (1.0 - first) / x
     change = -(drive.damping * motion.speed + torque) / drive.inertia * time
-    return Motion(0.0, motion.speed + change * first, motion.turned + time * (motion.speed + change * second))
+    return ArmatureMotion(0.0, motion.speed + change * first, motion.turned + time * (motion.speed + change * second))
 
 
 @compiled
-def acceleration(motion: Motion, drive: Drive, torque: float) -> float:
+def acceleration(motion: ArmatureMotion, drive: ArmatureDrive, torque: float) -> float:
     """Return the acceleration of the motor shaft [rad/s2]."""
     return (drive.constant * motion.current + drive.push - drive.damping * motion.speed - torque) / drive.inertia

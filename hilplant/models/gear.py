@@ -11,14 +11,16 @@ Where one changes into the other no torque passes, and both give the same accele
 """
 
 from hilplant.jit import compiled
-from hilplant.models.armature import Drive, Motion
+from hilplant.models.armature import ArmatureDrive, ArmatureMotion
 from hilplant.models.circuit import Connection
 from hilplant.models.records import Motor
 from hilplant.models.resistance import Resistance
 
 
 @compiled
-def through_gear(load: Resistance, direction: float, motion: Motion, connection: Connection, motor: Motor) -> Drive:
+def through_gear(
+    load: Resistance, direction: float, motion: ArmatureMotion, connection: Connection, motor: Motor
+) -> ArmatureDrive:
     """Return what acts on the armature, seen at its shaft, while it turns in `direction`, +1 or -1.
 
     Which of the two holds is decided by `motion`, its current and speed.
@@ -34,7 +36,7 @@ def through_gear(load: Resistance, direction: float, motion: Motion, connection:
         load.inertia * torque / ratio + (dry + load.slope * abs(motion.speed) / ratio) * motor.inertia_kg_m2 >= 0.0
     )
     passing = 1.0 / (ratio * motor.gear_efficiency) if driving else motor.gear_back_efficiency / ratio
-    return Drive(
+    return ArmatureDrive(
         voltage=connection.source_v if connection.closed > 0.5 else 0.0,
         resistance=brush.resistance_ohm,
         inductance=brush.inductance_henry,

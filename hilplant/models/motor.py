@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from hilplant.jit import compiled
-from hilplant.models.armature import Drive, Motion, acceleration, glide
+from hilplant.models.armature import ArmatureDrive, ArmatureMotion, acceleration, glide
 
 #: Stretches of sliding or sticking in one step, at most; a stop and a new start take three.
 STRETCHES = 24
@@ -33,7 +33,7 @@ class Hold(NamedTuple):
 
 
 @compiled
-def advance(motion: Motion, drive: Drive, duration: float) -> Motion:
+def advance(motion: ArmatureMotion, drive: ArmatureDrive, duration: float) -> ArmatureMotion:
     """Return the motion after `duration` [s] against a dry torque that is the same in both directions.
 
     After `STRETCHES` stretches without an end the shaft stands still for what is left of the step: the answer
@@ -59,7 +59,7 @@ def advance(motion: Motion, drive: Drive, duration: float) -> Motion:
 
 
 @compiled
-def direction_of(motion: Motion, drive: Drive, hold: Hold) -> float:
+def direction_of(motion: ArmatureMotion, drive: ArmatureDrive, hold: Hold) -> float:
     """Return +1 or -1 while the shaft turns or breaks away, 0 while it sticks."""
     if motion.speed != 0.0:
         return math.copysign(1.0, motion.speed)
@@ -70,17 +70,17 @@ def direction_of(motion: Motion, drive: Drive, hold: Hold) -> float:
 
 
 @compiled
-def stand(motion: Motion, drive: Drive, time: float) -> Motion:
+def stand(motion: ArmatureMotion, drive: ArmatureDrive, time: float) -> ArmatureMotion:
     """Return the motion after `time` at standstill; without a circuit there is no current."""
     if drive.constant == 0.0:
-        return Motion(0.0, 0.0, motion.turned)
+        return ArmatureMotion(0.0, 0.0, motion.turned)
     final = drive.voltage / drive.resistance
     current = final + (motion.current - final) * math.exp(-time * drive.resistance / drive.inductance)
-    return Motion(current, 0.0, motion.turned)
+    return ArmatureMotion(current, 0.0, motion.turned)
 
 
 @compiled
-def stick(motion: Motion, drive: Drive, hold: Hold, left: float) -> tuple[Motion, float]:
+def stick(motion: ArmatureMotion, drive: ArmatureDrive, hold: Hold, left: float) -> tuple[ArmatureMotion, float]:
     """Stand still until the motor breaks away or the time is over; return the motion and the time taken.
 
     The current approaches V/R without overshoot, so the instant at which K i reaches the held torque is a
@@ -94,13 +94,13 @@ def stick(motion: Motion, drive: Drive, hold: Hold, left: float) -> tuple[Motion
         ratio = (final - motion.current) / (final - threshold)
         wait = math.log(max(1.0, ratio)) * drive.inductance / drive.resistance
         if wait < left:
-            return Motion(threshold + 1e-15 * (final - threshold + abs(threshold) * math.copysign(1.0, torque)),
+            return ArmatureMotion(threshold + 1e-15 * (final - threshold + abs(threshold) * math.copysign(1.0, torque)),
                           0.0, motion.turned), wait  # fmt: skip
     return stand(motion, drive, left), left
 
 
 @compiled
-def slide(motion: Motion, drive: Drive, sign: float, stretch: float) -> tuple[Motion, float]:
+def slide(motion: ArmatureMotion, drive: ArmatureDrive, sign: float, stretch: float) -> tuple[ArmatureMotion, float]:
     """Slide in the direction `sign` until the speed comes to zero or the stretch is over; return motion and time taken.
 
     A dry torque below zero, of a load that pulls, drives the shaft in that direction.
@@ -114,11 +114,11 @@ def slide(motion: Motion, drive: Drive, sign: float, stretch: float) -> tuple[Mo
             return end, stretch
     instant = instant_of_zero(motion, drive, sign, below)
     stop = glide(motion, drive, torque, instant)
-    return Motion(stop.current, 0.0, stop.turned), instant
+    return ArmatureMotion(stop.current, 0.0, stop.turned), instant
 
 
 @compiled
-def dips(start: Motion, end: Motion, drive: Drive, sign: float) -> bool:
+def dips(start: ArmatureMotion, end: ArmatureMotion, drive: ArmatureDrive, sign: float) -> bool:
     """Return whether the speed may have changed its sign between two ends at which it has the same.
 
     It cannot while the motor's torque exceeds the dry torque, and while the speed falls the torque stays above it
@@ -134,7 +134,7 @@ def dips(start: Motion, end: Motion, drive: Drive, sign: float) -> bool:
 
 
 @compiled
-def half_period(drive: Drive) -> float:
+def half_period(drive: ArmatureDrive) -> float:
     """Return the time in which the speed can have one extremum at most [s]; endless without oscillation."""
     half = 0.5 * (drive.resistance / drive.inductance - drive.damping / drive.inertia)
     discriminant = half * half - drive.constant * drive.constant / (drive.inductance * drive.inertia)
@@ -142,7 +142,7 @@ def half_period(drive: Drive) -> float:
 
 
 @compiled
-def instant_below_zero(motion: Motion, drive: Drive, sign: float, stretch: float) -> float:
+def instant_below_zero(motion: ArmatureMotion, drive: ArmatureDrive, sign: float, stretch: float) -> float:
     """Return an instant at which a speed that dips within the stretch has changed its sign; 0 if it never does.
 
     Bisection of the acceleration, which changes its sign once; start: the ends of the stretch; tolerance and cap:
@@ -164,7 +164,7 @@ def instant_below_zero(motion: Motion, drive: Drive, sign: float, stretch: float
 
 
 @compiled
-def instant_of_zero(motion: Motion, drive: Drive, sign: float, below: float) -> float:
+def instant_of_zero(motion: ArmatureMotion, drive: ArmatureDrive, sign: float, below: float) -> float:
     """Return the instant in (0, below] at which the speed comes to zero; at `below` its sign has changed.
 
     Newton's method kept inside a shrinking bracket, else halving it. Start: the middle; tolerance:

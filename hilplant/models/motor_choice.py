@@ -8,7 +8,7 @@ same, two ticks of voltage, torque, current and speed, so the network goes on fr
 import math
 
 from hilplant.jit import compiled
-from hilplant.models.armature import Motion
+from hilplant.models.armature import ArmatureMotion
 from hilplant.models.narx import (
     FAST_BRUSH,
     NETWORK,
@@ -33,8 +33,8 @@ NARX = MOTORS.index("narx")
 
 @compiled
 def move(
-    motion: Motion, crank_angle_rad: float, load: Resistance, train: Train, state: State
-) -> tuple[Motion, MotorMemory]:
+    motion: ArmatureMotion, crank_angle_rad: float, load: Resistance, train: Train, state: State
+) -> tuple[ArmatureMotion, MotorMemory]:
     """Return the motion a step later and what is remembered of this one; `load` is that at the start."""
     memory, after, accepted = without_network(PHYSICAL), motion, False
     if train.parameters.motor_model == NARX:
@@ -48,7 +48,9 @@ def move(
 
 
 @compiled
-def by_network(motion: Motion, load: Resistance, train: Train, state: State) -> tuple[MotorMemory, Motion]:
+def by_network(
+    motion: ArmatureMotion, load: Resistance, train: Train, state: State
+) -> tuple[MotorMemory, ArmatureMotion]:
     """Return the network's answer; or in `MotorMemory.mode` why it has none."""
     networks, brush = train.parameters.networks, brush_of(train)
     path = path_of(networks, brush if brush != NO_BRUSH else SLOW_BRUSH)
@@ -79,7 +81,7 @@ def without_network(mode: float) -> MotorMemory:
 
 
 @compiled
-def coupled(now: Sample, before: Sample, load: Resistance, train: Train, path: int) -> tuple[Sample, Motion]:
+def coupled(now: Sample, before: Sample, load: Resistance, train: Train, path: int) -> tuple[Sample, ArmatureMotion]:
     """Return the sample with the torque that the load needs for the speed that the network answers to it.
 
     The torque contains the load's inertia, which is of the size of the motor's own, so it must be that of the
@@ -90,7 +92,7 @@ def coupled(now: Sample, before: Sample, load: Resistance, train: Train, path: i
     ratio, step_s = train.parameters.motor.gear_ratio, train.parameters.step_s
     motor, speed = train.parameters.motor, now.speed_rad_s
     answer = predict(train.parameters.networks, path, now, before)
-    half_way = Motion(0.5 * (now.current_a + answer.current_a), 0.5 * ratio * (speed + answer.speed_rad_s), 0.0)
+    half_way = ArmatureMotion(0.5 * (now.current_a + answer.current_a), 0.5 * ratio * (speed + answer.speed_rad_s), 0.0)
     drive = drive_at(half_way, 1.0, load, train)
     inertia = (drive.inertia - motor.inertia_kg_m2) * ratio * ratio / step_s
     damping = (drive.damping - motor.damping_n_m_s) * ratio * ratio
@@ -101,7 +103,7 @@ def coupled(now: Sample, before: Sample, load: Resistance, train: Train, path: i
     final /= 1.0 - answer.speed_by_torque * by_speed
     torque = at_zero + by_speed * final
     current = answer.current_a + answer.current_by_torque * (torque - now.torque_n_m)
-    after = Motion(current, final * ratio, 0.5 * step_s * ratio * (speed + final))
+    after = ArmatureMotion(current, final * ratio, 0.5 * step_s * ratio * (speed + final))
     return Sample(now.terminal_v, torque, now.current_a, speed), after
 
 
@@ -114,7 +116,7 @@ def brush_of(train: Train) -> float:
 
 
 @compiled
-def remembered(before: Motion, after: Motion, mode: float, train: Train) -> MotorMemory:
+def remembered(before: ArmatureMotion, after: ArmatureMotion, mode: float, train: Train) -> MotorMemory:
     """Return what a tick of the physical model leaves to the network, with the mean torque through the gear.
 
     That torque is what the integrals of (3.30) and (3.31) over the tick leave for it.
@@ -130,7 +132,7 @@ def remembered(before: Motion, after: Motion, mode: float, train: Train) -> Moto
 
 
 @compiled
-def carried_torque(before: Motion, after: Motion, train: Train) -> float:
+def carried_torque(before: ArmatureMotion, after: ArmatureMotion, train: Train) -> float:
     """Return the mean torque through the gear between two instants a step apart, at the crank [N m]."""
     motor, brush, step_s = train.parameters.motor, train.connection.brush, train.parameters.step_s
     turned = after.turned - before.turned

@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from hilplant.jit import compiled
-from hilplant.models.armature import Motion
+from hilplant.models.armature import ArmatureMotion
 from hilplant.models.circuit import connect, next_phase
 from hilplant.models.guard import admit, hold_if_wrong
 from hilplant.models.load import NETWORK, resist_as
@@ -48,7 +48,7 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     # 3 supply, wires and park circuit
     connection = connect(moved.inputs, parameters, contact, phase, state)
     # 4 kinematics and load at this instant
-    motion = Motion(state.current_a if connection.closed > 0.5 else 0.0, state.motor_speed_rad_s, 0.0)
+    motion = ArmatureMotion(state.current_a if connection.closed > 0.5 else 0.0, state.motor_speed_rad_s, 0.0)
     load_mode, tangent = PHYSICAL, NO_TANGENT
     if parameters.load.model == NETWORK:
         load_mode = load_in_charge(parameters.networks, speed, inputs, state.load_mode)
@@ -89,7 +89,7 @@ class Seen(NamedTuple):
 
 
 @compiled
-def measured(motion: Motion, crank: Crank, load: Resistance, seen: Seen, train: Train) -> Outputs:
+def measured(motion: ArmatureMotion, crank: Crank, load: Resistance, seen: Seen, train: Train) -> Outputs:
     """Return what can be seen of the plant at this instant."""
     inputs, parameters, connection = train.inputs, train.parameters, train.connection
     tables, place = crank.tables, crank.place

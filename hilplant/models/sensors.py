@@ -14,7 +14,7 @@ STUCK_OPEN, STUCK_CLOSED = 1.0, 2.0
 MULTIPLIER, MODULUS = 16807.0, 2147483647.0
 
 
-class Reading(NamedTuple):
+class SensorReading(NamedTuple):
     """The measured current [A], and where the noise has come to."""
 
     current_a: float
@@ -22,13 +22,13 @@ class Reading(NamedTuple):
 
 
 @compiled
-def read_current(current_a: float, noise: float, sensors: Sensors) -> Reading:
+def read_current(current_a: float, noise: float, sensors: Sensors) -> SensorReading:
     """Return gain x current + offset + noise, limited to what the sensor can show.
 
     The noise is normal (Box and Muller), a sample a tick, and the same in every run: its seed is a state.
     """
     if sensors.altered < 0.5:
-        return Reading(current_a, noise)
+        return SensorReading(current_a, noise)
     measured = sensors.current_gain * current_a + sensors.current_offset_a
     if sensors.current_noise_a > 0.0:
         first = noise * MULTIPLIER % MODULUS
@@ -37,7 +37,7 @@ def read_current(current_a: float, noise: float, sensors: Sensors) -> Reading:
         measured += sensors.current_noise_a * radius * math.cos(2.0 * math.pi * noise / MODULUS)
     if sensors.current_limit_a > 0.0:
         measured = min(sensors.current_limit_a, max(-sensors.current_limit_a, measured))
-    return Reading(measured, noise)
+    return SensorReading(measured, noise)
 
 
 @compiled

@@ -10,7 +10,7 @@ import math
 from typing import Any, NamedTuple
 
 from hilplant.jit import compiled
-from hilplant.models.armature import Drive, Motion, acceleration
+from hilplant.models.armature import ArmatureDrive, ArmatureMotion, acceleration
 from hilplant.models.circuit import Connection
 from hilplant.models.gear import held_torque, through_gear
 from hilplant.models.load import by_speed, resist_as, without_inertia
@@ -48,17 +48,17 @@ class Ahead(NamedTuple):
     """How long the next stretch is [s], and what is expected half-way: the motion, and the mean speed."""
 
     stretch: float
-    half_way: Motion
+    half_way: ArmatureMotion
 
 
 @compiled
-def drive_at(motion: Motion, direction: float, load: Resistance, train: Train) -> Drive:
+def drive_at(motion: ArmatureMotion, direction: float, load: Resistance, train: Train) -> ArmatureDrive:
     """Return what acts on the armature while it turns in `direction`."""
     return through_gear(load, direction, motion, train.connection, train.parameters.motor)
 
 
 @compiled
-def load_torque(motion: Motion, load: Resistance, train: Train) -> float:
+def load_torque(motion: ArmatureMotion, load: Resistance, train: Train) -> float:
     """Return the torque at the crank [N m], inertia and brake included, positive when it opposes motion; 0 at rest."""
     if motion.speed == 0.0:
         return 0.0
@@ -71,7 +71,7 @@ def load_torque(motion: Motion, load: Resistance, train: Train) -> float:
 
 
 @compiled
-def turn(motion: Motion, crank_angle_rad: float, load: Resistance, train: Train) -> Motion:
+def turn(motion: ArmatureMotion, crank_angle_rad: float, load: Resistance, train: Train) -> ArmatureMotion:
     """Return the motion one step later; `load` is that at the start."""
     if not without_inertia(train.parameters.load):
         return turn_in_stretches(motion, crank_angle_rad, load, train)
@@ -83,7 +83,7 @@ def turn(motion: Motion, crank_angle_rad: float, load: Resistance, train: Train)
 
 
 @compiled
-def turn_in_stretches(motion: Motion, crank_angle_rad: float, load: Resistance, train: Train) -> Motion:
+def turn_in_stretches(motion: ArmatureMotion, crank_angle_rad: float, load: Resistance, train: Train) -> ArmatureMotion:
     """Return the motion one step later, with the load evaluated anew in each stretch.
 
     After `STRETCHES` stretches without an end the shaft stands still for what is left of the step.
@@ -114,7 +114,9 @@ def turn_in_stretches(motion: Motion, crank_angle_rad: float, load: Resistance, 
 
 
 @compiled
-def let_go(motion: Motion, drive: Drive, load: Resistance, left: float, train: Train) -> tuple[Motion, float, float]:
+def let_go(
+    motion: ArmatureMotion, drive: ArmatureDrive, load: Resistance, left: float, train: Train
+) -> tuple[ArmatureMotion, float, float]:
     """Stand still until the motor breaks away or the time is over; return motion, time taken, and direction or 0."""
     motor = train.parameters.motor
     hold = Hold(held_torque(load, 1.0, motor), held_torque(load, -1.0, motor))
@@ -126,7 +128,7 @@ def let_go(motion: Motion, drive: Drive, load: Resistance, left: float, train: T
 
 
 @compiled
-def look_ahead(motion: Motion, drive: Drive, direction: float, left: float, train: Train) -> Ahead:
+def look_ahead(motion: ArmatureMotion, drive: ArmatureDrive, direction: float, left: float, train: Train) -> Ahead:
     """Return the next stretch, from the acceleration and its derivative at its start.
 
     At standstill, direction 0, the middle of the stretch is its start.
@@ -144,5 +146,5 @@ def look_ahead(motion: Motion, drive: Drive, direction: float, left: float, trai
         stretch = min(left, max(SHORTEST * duration, stretch))
     mean = motion.speed + stretch * (0.5 * push + stretch * jerk / 6.0)
     turned = motion.turned + 0.5 * stretch * (motion.speed + 0.25 * stretch * push)
-    half_way = Motion(motion.current + 0.5 * stretch * rising, mean if direction * mean > 0.0 else 0.0, turned)
+    half_way = ArmatureMotion(motion.current + 0.5 * stretch * rising, mean if direction * mean > 0.0 else 0.0, turned)
     return Ahead(stretch, half_way)

@@ -26,7 +26,7 @@ class SteadyRun(NamedTuple):
     speed_rad_s: Number
 
 
-class Friction(NamedTuple):
+class MotorFriction(NamedTuple):
     """The motor's own friction: K i = b w + T while it turns without a load."""
 
     damping_n_m_s: Number
@@ -127,7 +127,7 @@ def cylinder_inertia(mass_kg: Number, radius_m: Number) -> UFloat:
     return quantity(0.5 * mass_kg * radius_m * radius_m)
 
 
-def no_load_friction(runs: Sequence[SteadyRun], constants_v_s: Sequence[Number]) -> Friction:
+def no_load_friction(runs: Sequence[SteadyRun], constants_v_s: Sequence[Number]) -> MotorFriction:
     """Return damping and Coulomb torque from no-load points at different speeds: a straight line K I = b w + T.
 
     Errors come from the points' distance from the line; two points leave none, so theirs come from the readings alone.
@@ -147,21 +147,23 @@ def no_load_friction(runs: Sequence[SteadyRun], constants_v_s: Sequence[Number])
     slope = sum(each * torque for each, torque in zip(spread, torques, strict=True)) / denominator
     level = sum(torques) / count - slope * sum(speeds) / count
     if count == 2:
-        return Friction(quantity(slope), quantity(level))
+        return MotorFriction(quantity(slope), quantity(level))
     return _with_scatter(torques, speeds, quantity(slope), quantity(level))
 
 
-def _with_scatter(torques: Sequence[Number], speeds: Sequence[UFloat], slope: UFloat, level: UFloat) -> Friction:
+def _with_scatter(torques: Sequence[Number], speeds: Sequence[UFloat], slope: UFloat, level: UFloat) -> MotorFriction:
     x = np.array([speed.nominal_value for speed in speeds])
     y = np.array([quantity(torque).nominal_value for torque in torques])
     design = np.column_stack([x, np.ones_like(x)])
     errors = y - design @ [slope.nominal_value, level.nominal_value]
     covariance = np.linalg.inv(design.T @ design) * float(errors @ errors) / (len(x) - 2)
     found = (max(each.std_dev, float(np.sqrt(covariance[i, i]))) for i, each in enumerate((slope, level)))
-    return Friction(*(quantity(each.nominal_value, error) for each, error in zip((slope, level), found, strict=True)))
+    return MotorFriction(
+        *(quantity(each.nominal_value, error) for each, error in zip((slope, level), found, strict=True))
+    )
 
 
-def run_down(time_s: Samples, speed_rad_s: Samples, friction: Friction) -> UFloat:
+def run_down(time_s: Samples, speed_rad_s: Samples, friction: MotorFriction) -> UFloat:
     """Return the inertia [kg m2] from a run-down without current: J dw/dt = -b w - T, with b and T known.
 
     The terminals must be open: the speed is then the open voltage over K. Only the ratio of friction to inertia shows

@@ -12,7 +12,7 @@ from uncertainties import UFloat
 
 from hilplant.failure import Failure
 from hilplant.motor_bench.bench_measurements import (
-    Friction,
+    MotorFriction,
     Number,
     SteadyRun,
     back_emf_constant,
@@ -39,7 +39,7 @@ class SheetMotor(NamedTuple):
     slow_constant_v_s: UFloat
     fast_resistance_ohm: UFloat
     fast_constant_v_s: UFloat
-    friction: Friction
+    friction: MotorFriction
     gear_efficiency: UFloat | None
     unknown: tuple[str, ...] = ("slow_inductance_henry", "fast_inductance_henry", "inertia_kg_m2")
 
@@ -82,7 +82,7 @@ def _check(name: str, sheet: SpeedSheet) -> None:
 
 
 def _efficiency(
-    sheets: tuple[SpeedSheet, SpeedSheet], constants: list[UFloat], friction: Friction, gear_ratio: float
+    sheets: tuple[SpeedSheet, SpeedSheet], constants: list[UFloat], friction: MotorFriction, gear_ratio: float
 ) -> UFloat | None:
     """Return the mean efficiency from the stall torques that are given; one above 1 contradicts its own sheet."""
     found = []

@@ -10,7 +10,7 @@ from hilplant.failure import Failure
 from hilplant.measurements.csv_table import read_csv
 from hilplant.measurements.measurement import Samples
 from hilplant.motor_bench.bench_measurements import (
-    Friction,
+    MotorFriction,
     SteadyRun,
     back_emf_constant,
     cylinder_inertia,
@@ -106,11 +106,11 @@ def _inductance(name: str, mode: BenchMode, ohm: UFloat, beside: Path) -> Values
     return {}
 
 
-def _friction(runs: Sequence[SteadyRun], constants: Sequence[UFloat], given: Given) -> Friction:
+def _friction(runs: Sequence[SteadyRun], constants: Sequence[UFloat], given: Given) -> MotorFriction:
     if given.damping_n_m_s is None:
         return no_load_friction(runs, constants)
     dry = [k * run.current_a - given.damping_n_m_s * run.speed_rad_s for run, k in zip(runs, constants, strict=True)]
-    return Friction(quantity(given.damping_n_m_s), mean_of(dry))
+    return MotorFriction(quantity(given.damping_n_m_s), mean_of(dry))
 
 
 def _samples(name: str, beside: Path) -> tuple[Samples, Samples]:

@@ -23,7 +23,7 @@ class Given(Checked):
     gear_efficiency: Annotated[float, Field(gt=0, le=1)] | None = None
 
 
-class Armature(Checked):
+class ArmatureReadings(Checked):
     """The armature as a solid cylinder, (5.21)."""
 
     mass_kg: Positive
@@ -64,7 +64,7 @@ class BenchReadings(Sourced):
     reading_error: NotNegative = 0.0
     slow: BenchMode
     fast: BenchMode
-    armature: Armature | None = None
+    armature: ArmatureReadings | None = None
     run_down: Name | None = None
     given: Given = Given()
 

@@ -13,7 +13,7 @@ from hilplant.bench import Bench
 from hilplant.models.row import pack
 from hilplant.perf.c_step import Rows, SimulateRows, compile_batch
 from hilplant.perf.minute import bench_with, mixed_minute
-from hilplant.perf.results import Goal, Measured, Row
+from hilplant.perf.results import Goal, PartResult, Row
 from hilplant.perf.samples import alternate
 from hilplant.perf.step_cost import worst_difference
 from hilplant.signals import OUTPUT_INDEX
@@ -26,7 +26,7 @@ _GOAL = Goal(1.2)
 _COLUMNS = ("current_a", "motor_speed_rad_s", "crank_angle_rad")
 
 
-def measure() -> Measured:
+def measure() -> PartResult:
     """Run the sets by one call of each, in turn: two seconds of slow wiping, from rest on a screen that gets wet."""
     bench = bench_with("reduced")
     inputs = mixed_minute().input_rows(bench.input_row, bench.step_ns)[_TICKS]
@@ -51,7 +51,7 @@ def measure() -> Measured:
         "batch_cores": processors,
     }
     remark = f"{1e3 / ours_ns:.1f} million steps a second, C {1e3 / limit_ns:.1f}; apart by {differences:.1g}"
-    return Measured([row], figures, [remark])
+    return PartResult([row], figures, [remark])
 
 
 def shaken_sets(bench: Bench, sets: int) -> Rows:

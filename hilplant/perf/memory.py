@@ -9,7 +9,7 @@ from typing import Any
 from hilplant.bench import load_bench
 from hilplant.perf.busy_bus import VIRTUAL, Peer, both_ends
 from hilplant.perf.own_process import figures_of, hand_back
-from hilplant.perf.results import Goal, Measured, Row
+from hilplant.perf.results import Goal, PartResult, Row
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
@@ -27,17 +27,17 @@ _GOAL_MB = 1.0
 _PAGE_MB = os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
-def measure() -> Measured:
+def measure() -> PartResult:
     """Simulate as many hours as fit into a minute."""
     return _part(figures_of("hilplant.perf.memory", str(_WALL_S)))
 
 
-def measure_full() -> Measured:
+def measure_full() -> PartResult:
     """Simulate ten hours, however long that takes."""
     return _part(figures_of("hilplant.perf.memory", "inf"))
 
 
-def _part(result: dict[str, Any]) -> Measured:
+def _part(result: dict[str, Any]) -> PartResult:
     start_mb, end_mb, hours = result["start_mb"], result["end_mb"], result["simulated_h"]
     growth_mb = end_mb - start_mb
     rows = [
@@ -51,7 +51,7 @@ def _part(result: dict[str, Any]) -> Measured:
         "memory_simulated_h": hours,
     }
     remark = f"{result['ticks']} ticks and {result['frames']} frames in {result['wall_s']:.0f} s of real time"
-    return Measured(rows, figures, [remark])
+    return PartResult(rows, figures, [remark])
 
 
 def resident_mb() -> float:

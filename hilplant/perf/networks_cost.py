@@ -12,7 +12,7 @@ from hilplant.models.narx import NETWORK
 from hilplant.models.plant import simulate_rows
 from hilplant.perf.c_step import Rows, SimulateRows, compile_step
 from hilplant.perf.minute import mixed_minute
-from hilplant.perf.results import Goal, Measured, NotMeasurable, Row
+from hilplant.perf.results import Goal, NotMeasurable, PartResult, Row
 from hilplant.perf.samples import alternate
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 
@@ -31,9 +31,9 @@ def calm_minute(bench: Bench) -> Rows:
     return rows
 
 
-def measure() -> Measured:
+def measure() -> PartResult:
     """Run a calm minute with each kind of network, in turn by both languages; start-up apart."""
-    measured = Measured()
+    measured = PartResult()
     with TemporaryDirectory(prefix="hilplant-c-") as folder:
         in_c = compile_step(Path(folder))
         for name in _BENCHES:
@@ -41,7 +41,7 @@ def measure() -> Measured:
     return measured
 
 
-def _measure_bench(name: str, in_c: SimulateRows, measured: Measured) -> None:
+def _measure_bench(name: str, in_c: SimulateRows, measured: PartResult) -> None:
     label, goal_ms, thesis_s = _BENCHES[name]
     bench = load_bench(name)
     inputs = calm_minute(bench)

@@ -25,4 +25,4 @@ def figures_of(module: str, *arguments: str, inside: Sequence[str] = ()) -> dict
 
 def hand_back(figures: dict[str, Any]) -> None:
     """Give figures to the process that started this one."""
-    print(_MARK + json.dumps(figures), flush=True)
+    sys.stdout.write(_MARK + json.dumps(figures) + "\n")

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from hilplant.failure import Failure
 from hilplant.perf.machine import machine
-from hilplant.perf.results import Measured, NotMeasurable
+from hilplant.perf.results import NotMeasurable, PartResult
 from hilplant.progress import OnProgress, ProgressReport, unseen
 
 #: The parts in their order, and the function that measures each.
@@ -30,7 +30,7 @@ class Benchmarks(NamedTuple):
     """What was measured on which machine: parts by name in their order."""
 
     machine: dict[str, float | str]
-    parts: dict[str, Measured]
+    parts: dict[str, PartResult]
 
     @property
     def figures(self) -> dict[str, float | str]:
@@ -44,7 +44,7 @@ class Benchmarks(NamedTuple):
 def measure(only: str | None = None, on_progress: OnProgress = unseen) -> Benchmarks:
     """Measure the parts in `only`, names with commas between, or all."""
     names = chosen_parts(only)
-    described, parts = machine(), dict[str, Measured]()
+    described, parts = machine(), dict[str, PartResult]()
     for done, name in enumerate(names):
         on_progress(ProgressReport(f"measuring {name}", done, len(names)))
         parts[name] = _measured(name)
@@ -62,11 +62,11 @@ def chosen_parts(only: str | None) -> list[str]:
     return [name for name in PARTS if name in wanted]
 
 
-def _measured(name: str) -> Measured:
+def _measured(name: str) -> PartResult:
     """Measure one part; what cannot be measured here leaves its reason behind."""
     module, _, function = PARTS[name].partition(".")
     try:
-        result: Measured = getattr(import_module(f"hilplant.perf.{module}"), function)()
+        result: PartResult = getattr(import_module(f"hilplant.perf.{module}"), function)()
     except NotMeasurable as reason:
-        return Measured(remarks=[f"not measured: {reason}"])
+        return PartResult(remarks=[f"not measured: {reason}"])
     return result

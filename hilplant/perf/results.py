@@ -42,7 +42,7 @@ class Row(NamedTuple):
 
 
 @dataclass(slots=True)
-class Measured:
+class PartResult:
     """What one part came to."""
 
     rows: list[Row] = field(default_factory=list)

@@ -10,7 +10,7 @@ import numpy as np
 from hilplant.bench import Bench
 from hilplant.perf.c_step import SimulateRows, compile_step
 from hilplant.perf.minute import MINUTE_GOALS_MS, THESIS_S, bench_with, mixed_minute
-from hilplant.perf.results import Goal, Measured, Row
+from hilplant.perf.results import Goal, PartResult, Row
 from hilplant.perf.samples import alternate
 from hilplant.perf.step_cost import timed_s
 from hilplant.signals import OUTPUTS
@@ -19,9 +19,9 @@ from hilplant.simulation.run import simulate
 _ROUNDS = 20
 
 
-def measure() -> Measured:
+def measure() -> PartResult:
     """Simulate a minute under each load, inputs and results included; start-up and loading of the files apart."""
-    measured = Measured()
+    measured = PartResult()
     with TemporaryDirectory(prefix="hilplant-c-") as folder:
         in_c = compile_step(Path(folder))
         for load, goal_ms in MINUTE_GOALS_MS.items():

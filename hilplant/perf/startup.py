@@ -8,7 +8,7 @@ from statistics import median
 from tempfile import TemporaryDirectory
 
 from hilplant.perf.daemon_run import run_daemon_once, virtual_bench
-from hilplant.perf.results import Goal, Measured, NotMeasurable, Row
+from hilplant.perf.results import Goal, NotMeasurable, PartResult, Row
 
 _ROUNDS = 3
 _ONE_TICK_S = 0.001
@@ -38,7 +38,7 @@ _LEAN = "import sys, time; sys.modules['asammdf'] = None; begin = time.perf_coun
 _TIMED = f"{_LEAN}; {_LIBRARIES}; print(time.perf_counter() - begin)"
 
 
-def measure() -> Measured:
+def measure() -> PartResult:
     """Measure one cold start and a few warm ones, and where the time of a warm one goes."""
     with virtual_bench() as bench, TemporaryDirectory(prefix="hilplant-cold-") as cache:
         cold_s = run_daemon_once(bench, _ONE_TICK_S, Path(cache)).first_tick_s
@@ -64,7 +64,7 @@ def measure() -> Measured:
         "startup_libraries_s": libraries_s,
     }
     remark = f"cold: nothing compiled yet, files in the page cache; libraries: {_LIBRARIES}"
-    return Measured(rows, figures, [remark])
+    return PartResult(rows, figures, [remark])
 
 
 def _python(code: str, *arguments: str) -> str:

@@ -12,7 +12,7 @@ from hilplant.bench import Bench
 from hilplant.models.plant import simulate_rows
 from hilplant.perf.c_step import FLAGS, Rows, SimulateRows, compile_step, compiler
 from hilplant.perf.minute import RATIO_GOALS, bench_with, mixed_minute
-from hilplant.perf.results import Goal, Measured, NotMeasurable, Row
+from hilplant.perf.results import Goal, NotMeasurable, PartResult, Row
 from hilplant.perf.samples import alternate
 from hilplant.signals import OUTPUTS
 from hilplant.units import SECOND_NS
@@ -21,9 +21,9 @@ _ROUNDS = 30
 _NATIVE = "-march=native"
 
 
-def measure() -> Measured:
+def measure() -> PartResult:
     """Run the same minute in turn by both, and by C with all that this processor offers, under each load."""
-    measured = Measured()
+    measured = PartResult()
     with TemporaryDirectory(prefix="hilplant-c-") as folder:
         ways = [simulate_rows, compile_step(Path(folder)), compile_step(Path(folder), _NATIVE)]
         differences = [_measure_load(load, ways, measured) for load in RATIO_GOALS]
@@ -34,7 +34,7 @@ def measure() -> Measured:
     return measured
 
 
-def _measure_load(load: str, ways: list[SimulateRows], measured: Measured) -> float:
+def _measure_load(load: str, ways: list[SimulateRows], measured: PartResult) -> float:
     """Add rows and figures of one load; return how far the outputs of the ways are apart."""
     bench = bench_with(load)
     inputs = mixed_minute().input_rows(bench.input_row, bench.step_ns)

@@ -22,7 +22,7 @@ from hilplant.perf.busy_bus import (
     silent_bench,
 )
 from hilplant.perf.daemon_run import PRIORITY, chosen_cpu
-from hilplant.perf.results import Measured, NotMeasurable, Row
+from hilplant.perf.results import NotMeasurable, PartResult, Row
 from hilplant.perf.samples import quantile
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.loop import ROW_WIDTH
@@ -41,14 +41,14 @@ Action = Callable[[int], None]
 Times = dict[str, tuple[float, float]]
 
 
-def measure() -> Measured:
+def measure() -> PartResult:
     """Measure on python-can's in-memory bus."""
     return tick_part(tick_times(VIRTUAL), "tick", "in-memory bus")
 
 
-def tick_part(times: Times, key: str, bus: str) -> Measured:
+def tick_part(times: Times, key: str, bus: str) -> PartResult:
     """Turn the times into rows and figures; `key` begins the names of the figures."""
-    measured = Measured(remarks=[f"{FRAMES_IN} frames in and {FRAMES_OUT} out in every tick"])
+    measured = PartResult(remarks=[f"{FRAMES_IN} frames in and {FRAMES_OUT} out in every tick"])
     for index, name in enumerate(("p50", "p99")):
         whole, bare = times["tick"][index], times["bus"][index]
         measured.rows.append(Row(f"{bus}, {name}", whole, "us", bare, "frames alone"))

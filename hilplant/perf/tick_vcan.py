@@ -7,13 +7,13 @@ from typing import Any
 from hilplant.perf.busy_bus import VCAN
 from hilplant.perf.machine import is_user_mode_linux
 from hilplant.perf.own_process import figures_of, hand_back
-from hilplant.perf.results import Measured
+from hilplant.perf.results import PartResult
 from hilplant.perf.tick_cost import tick_part, tick_times
 
 _PRIVATE_VCAN = (sys.executable, "-m", "hilplant.vcan.private_vcan", "--limit", "300")
 
 
-def measure() -> Measured:
+def measure() -> PartResult:
     """Measure on vcan0, wherever it can be had."""
     here = Path("/sys/class/net/vcan0").exists()
     result = _measured() if here else figures_of("hilplant.perf.tick_vcan", inside=_PRIVATE_VCAN)

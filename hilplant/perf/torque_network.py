@@ -10,7 +10,7 @@ import numpy as np
 from hilplant.bench import load_bench
 from hilplant.models.torque_samples import network_tangents
 from hilplant.perf.c_step import Rows, Tangents, compile_network
-from hilplant.perf.results import Goal, Measured, Row
+from hilplant.perf.results import Goal, PartResult, Row
 from hilplant.perf.samples import alternate
 from hilplant.units import SECOND_NS, TURN_RAD
 
@@ -18,7 +18,7 @@ _ROUNDS, _SAMPLES = 40, 20_000
 _GOAL = Goal(1.2)
 
 
-def measure() -> Measured:
+def measure() -> PartResult:
     """Evaluate random states in turn by both."""
     bench = load_bench("network")
     numbers, random = np.ascontiguousarray(bench.parameters.networks), np.random.default_rng(1)
@@ -36,7 +36,7 @@ def measure() -> Measured:
         "torque_network_c_ns": c_ns,
         "torque_network_ratio_to_c": ours_ns / c_ns,
     }
-    return Measured(rows, figures)
+    return PartResult(rows, figures)
 
 
 def _timed_s(way: Tangents, numbers: Rows, states: Rows, into: Rows) -> float:

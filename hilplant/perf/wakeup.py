@@ -13,7 +13,7 @@ from pathlib import Path
 
 from hilplant.perf.cyclictest import Latencies, run_cyclictest
 from hilplant.perf.daemon_run import PRIORITY, chosen_cpu, run_daemon_once, virtual_bench
-from hilplant.perf.results import Goal, Measured, NotMeasurable, Row
+from hilplant.perf.results import Goal, NotMeasurable, PartResult, Row
 from hilplant.perf.samples import middle
 
 _ROUNDS = 3
@@ -34,9 +34,9 @@ def busy_cores() -> Iterator[None]:
             load.wait()
 
 
-def measure() -> Measured:
+def measure() -> PartResult:
     """Measure on the machine as it is, then with every processor busy."""
-    measured = Measured()
+    measured = PartResult()
     with virtual_bench() as bench:
         run_daemon_once(bench, 0.01)
         _compare(bench, measured, "", "")
@@ -47,7 +47,7 @@ def measure() -> Measured:
     return measured
 
 
-def _compare(bench: Path, measured: Measured, suffix: str, condition: str) -> None:
+def _compare(bench: Path, measured: PartResult, suffix: str, condition: str) -> None:
     loops, cyclictests = [], []
     for _ in range(_ROUNDS):
         loops.append(_of_daemon(bench)._asdict())

@@ -7,10 +7,10 @@ import numpy as np
 from hilplant.arrays import Floats
 from hilplant.plots.picture import figure_with, save
 from hilplant.train.motor_compare import Grid
-from hilplant.train.motor_fit import Trained
+from hilplant.train.motor_fit import TrainedPath
 
 
-def plot_paths(paths: tuple[Trained, ...], path: Path) -> None:
+def plot_paths(paths: tuple[TrainedPath, ...], path: Path) -> None:
     """Draw current and crank speed of the test part, true and in closed loop, with the errors below."""
     figure, axes = figure_with((12, 9), 4, 2, sharex="col")
     for column, trained in enumerate(paths):

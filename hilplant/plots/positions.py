@@ -8,7 +8,7 @@ import numpy as np
 from hilplant.failure import Failure
 from hilplant.mechanics.motion import Motion, motion
 from hilplant.mechanics.planar import Floats, Revolute
-from hilplant.mechanics.wiper import Side, Wiper
+from hilplant.mechanics.wiper import Wiper, WiperSide
 from hilplant.plots.picture import figure_with, save
 from hilplant.units import RAD_PER_DEG, TURN_RAD
 
@@ -89,7 +89,7 @@ def _pins(wiper: Wiper, body: str) -> list[tuple[str, tuple[float, float]]]:
     return [pin for joint in turning for pin in (joint.first, joint.second) if pin[0] == body]
 
 
-def _arm_and_blade(axes: Any, wiper: Wiper, side: Side, look: tuple[Floats, str]) -> None:
+def _arm_and_blade(axes: Any, wiper: Wiper, side: WiperSide, look: tuple[Floats, str]) -> None:
     coordinates, color = look
     bodies = {body.name: body for body in wiper.bodies}
     rods = [bodies[name] for name in side.bodies if "_arm_" in name]

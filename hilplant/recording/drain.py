@@ -81,9 +81,9 @@ def main(ring_name: str, path: str, loop_cpu: str) -> int:
     except OSError as error:
         cause = error.strerror or error
         if started:
-            print(f"{path}: the recording ends early: {cause}", file=sys.stderr, flush=True)
+            sys.stderr.write(f"{path}: the recording ends early: {cause}\n")
         else:
-            print(f"{path}: cannot record to this file: {cause}", flush=True)
+            sys.stdout.write(f"{path}: cannot record to this file: {cause}\n")
     else:
         return 0 if started else 1
     return 1

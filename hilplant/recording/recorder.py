@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import logging
 import re
 import select
 import subprocess
@@ -17,6 +18,7 @@ from hilplant.recording.metadata import RecordedBench, describe
 from hilplant.recording.rotation import Rotation, parts_of
 from hilplant.runtime.ring import Ring
 
+_LOG = logging.getLogger(__name__)
 _START_TIMEOUT_S = 30.0
 #: Files that `export` makes of a recording; a recording under such a name would pass for one.
 _EXPORTED = (".mf4", ".blf", ".asc", ".csv", ".parquet")
@@ -78,11 +80,8 @@ class Recorder:
         self._child.wait()
         if not self._ending:
             self._ring.forget_reader()
-            print(
-                f"{self._path}: no longer recorded, {self._cause()}; the run goes on",
-                file=sys.stderr,
-                flush=True,
-            )
+            # A thread has no caller to return this to; without another handler a log goes to stderr as it is.
+            _LOG.error("%s: no longer recorded, %s; the run goes on", self._path, self._cause())
 
     def _cause(self) -> str:
         return _ended(self._child.returncode)

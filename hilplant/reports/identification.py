@@ -6,14 +6,14 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from hilplant.atomic_write import write_text
-from hilplant.identify.result_files import Origin
-from hilplant.identify.starting_point import Known
+from hilplant.identify.result_files import ResultOrigin
+from hilplant.identify.starting_point import StartingPoint
 from hilplant.identify.three_stages import Identified
 from hilplant.identify.validation import Comparison, unexplained
 from hilplant.plots.identification import convergence_picture, correlation_picture, run_picture
 
 
-def write_report(path: Path, found: Identified, known: Known, origin: Origin, notes: list[str]) -> None:
+def write_report(path: Path, found: Identified, known: StartingPoint, origin: ResultOrigin, notes: list[str]) -> None:
     """Write the report; `notes` are what was said of the data and of the way.
 
     Raises
@@ -29,7 +29,7 @@ def write_report(path: Path, found: Identified, known: Known, origin: Origin, no
     write_text(path, text)
 
 
-def _content(found: Identified, known: Known, origin: Origin, notes: list[str]) -> dict[str, Any]:
+def _content(found: Identified, known: StartingPoint, origin: ResultOrigin, notes: list[str]) -> dict[str, Any]:
     times, left = found.times, found.solution.noise
     return {
         "bench": found.task.bench.name,
@@ -58,7 +58,7 @@ def _run(comparison: Comparison, role: str) -> dict[str, Any]:
     return {"error": comparison.error, "role": role, "picture": run_picture(comparison)}
 
 
-def parameter_rows(found: Identified, known: Known) -> list[dict[str, Any]]:
+def parameter_rows(found: Identified, known: StartingPoint) -> list[dict[str, Any]]:
     """Return the table of parameters: the bench's value, each stage's, the interval, and what the data say."""
     rows = []
     before, choice = found.task.choice.values, found.task.choice

@@ -14,7 +14,7 @@ from hilplant.reports.page import TrainingReport, markdown_table, write_page
 from hilplant.train.motor import MotorNetwork, train_motor, write_network
 from hilplant.train.motor_compare import Differences, Grid, over_grid, random_runs
 from hilplant.train.motor_figures import GOAL_MSE, GOAL_S, lines, path_figures, table
-from hilplant.train.motor_search import Found, search
+from hilplant.train.motor_search import OneTickErrors, search
 
 Figures = dict[str, Any]
 _RUNS = 100
@@ -45,7 +45,7 @@ def report_motor(
     return TrainingReport(shown, figures, kept)
 
 
-def _verdict(network: MotorNetwork, others: Found) -> tuple[bool, str]:
+def _verdict(network: MotorNetwork, others: OneTickErrors) -> tuple[bool, str]:
     """Return whether scenarios that had no part in the bounds stay within them, and a line that says so."""
     bound = network.content["bound"]
     kept = others.current_a <= bound["current_a"] and others.crank_speed_rad_s <= bound["crank_speed_rad_s"]

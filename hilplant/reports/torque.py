@@ -17,10 +17,10 @@ from hilplant.models.row import pack
 from hilplant.plots.training import plot_errors
 from hilplant.progress import OnProgress, unseen
 from hilplant.reports.page import TrainingReport, markdown_table, write_page
-from hilplant.train.torque import Plan, Trained, data_of, train
+from hilplant.train.torque import TrainedTorque, TrainingPlan, data_of, train
 from hilplant.train.torque_data import Speeds
 from hilplant.train.torque_file import Dense, content_of
-from hilplant.train.torque_search import Found, Range, search
+from hilplant.train.torque_search import Range, TorqueDifferences, search
 from hilplant.train.torque_thesis import TABLE_6_2
 from hilplant.train.writing import write_file
 
@@ -45,7 +45,7 @@ class TorqueOptions:
 def train_torque(bench_name: str, options: TorqueOptions, on_progress: OnProgress = unseen) -> TrainingReport:
     """Train a torque network and write `torque.yaml`, `report.md` and plots; it kept its bounds or not."""
     bench, folder = load_bench(bench_name), make_folder(options.out)
-    plan = Plan(
+    plan = TrainingPlan(
         neurons=options.neurons, harmonics=options.harmonics, starts=options.starts, seed=options.seed,
         speeds=Speeds(options.speeds_rad_s),
     )  # fmt: skip
@@ -84,7 +84,9 @@ def _with_network(bench: Bench, content: Figures) -> Bench:
     )
 
 
-def _torque_figures(content: Figures, trained: Trained, found: Found, seconds: tuple[float, float]) -> Figures:
+def _torque_figures(
+    content: Figures, trained: TrainedTorque, found: TorqueDifferences, seconds: tuple[float, float]
+) -> Figures:
     searched = {
         f"scenario_{field.name}": getattr(found, field.name)
         for field in fields(found)

@@ -9,7 +9,7 @@ from hilplant.plots.training import plot_study
 from hilplant.progress import OnProgress, unseen
 from hilplant.reports.page import TrainingReport, markdown_table, write_page
 from hilplant.reports.torque import TorqueOptions
-from hilplant.train.torque import Plan, data_of
+from hilplant.train.torque import TrainingPlan, data_of
 from hilplant.train.torque_data import Speeds
 from hilplant.train.torque_study import Studied, study
 from hilplant.train.torque_thesis import TABLE_6_1
@@ -25,9 +25,9 @@ def study_torque(
     bench, folder = load_bench(bench_name), make_folder(options.out)
     studied: list[Studied] = []
     kinds = sorted({0, options.harmonics})
-    data = data_of(bench, Plan(speeds=Speeds(options.speeds_rad_s)))
+    data = data_of(bench, TrainingPlan(speeds=Speeds(options.speeds_rad_s)))
     for harmonics in kinds:
-        plan = Plan(harmonics=harmonics, seed=options.seed, speeds=Speeds(options.speeds_rad_s))
+        plan = TrainingPlan(harmonics=harmonics, seed=options.seed, speeds=Speeds(options.speeds_rad_s))
         studied += study(data, plan, range(1, most_neurons + 1), on_progress)
     head = ["neurons", "inputs", "total MSE", "validation MSE", "time s", "thesis total", "thesis validation", "time s"]
     rows = [_study_row(one) for one in studied]

@@ -17,7 +17,7 @@ from hilplant.runtime.watchdog import Watchdog
 from hilplant.units import MICROSECOND_NS, MILLISECOND_NS, SECOND_NS
 
 
-class LoopSettings(Protocol):
+class ServedLoop(Protocol):
     """What the bench says about the loop."""
 
     @property
@@ -69,7 +69,7 @@ class ServedBench(PlantRows, Protocol):
         """Identifiers of messages between others, with whether they are extended."""
 
     @property
-    def loop(self) -> LoopSettings:
+    def loop(self) -> ServedLoop:
         """Settings of the loop."""
 
 
@@ -129,7 +129,7 @@ def ended_by_signals(stop: StopRequest) -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def link_settings(loop: LoopSettings) -> LinkSettings:
+def link_settings(loop: ServedLoop) -> LinkSettings:
     """Return how the bench wants its interface treated."""
     first_ms, longest_ms = loop.reopen_ms
     return LinkSettings(loop.frames_per_tick, loop.queue_frames, first_ms * MILLISECOND_NS, longest_ms * MILLISECOND_NS)

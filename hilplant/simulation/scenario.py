@@ -18,7 +18,7 @@ from hilplant.checked_yaml.problems import suggestion
 from hilplant.checked_yaml.reading import Reading
 from hilplant.checked_yaml.yaml_reader import Document, Location
 from hilplant.declaration import Signal
-from hilplant.ecu.stalk import Turn
+from hilplant.ecu.stalk import StalkTurn
 from hilplant.failure import Failure
 from hilplant.signals import INPUT_INDEX, INPUTS
 from hilplant.simulation.scenario_schema import EntriesOfInputs
@@ -80,7 +80,7 @@ class Scenario:
     seconds: float
     initial: dict[str, float]
     entries: dict[int, tuple[Entry, ...]]
-    stalk: tuple[Turn, ...] = ()
+    stalk: tuple[StalkTurn, ...] = ()
     marks: dict[str, float] = field(default_factory=dict)
     expect: tuple[Placed, ...] = ()
     title: str = ""

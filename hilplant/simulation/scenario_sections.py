@@ -4,14 +4,14 @@ from typing import Any
 
 from hilplant.checked_yaml.reading import Reading
 from hilplant.checked_yaml.yaml_reader import Document
-from hilplant.ecu.stalk import Turn, move_named, wanted
+from hilplant.ecu.stalk import StalkTurn, move_named, wanted
 from hilplant.verdicts.binding import Placed
 from hilplant.verdicts.written import kind_of
 
 
-def read_stalk(reading: Reading, document: Document) -> tuple[Turn, ...]:
+def read_stalk(reading: Reading, document: Document) -> tuple[StalkTurn, ...]:
     """Return the movements of the stalk, `[TIME, POSITION]` each, times rising."""
-    turns: list[Turn] = []
+    turns: list[StalkTurn] = []
     for index, pair in enumerate(_list_at(document, "stalk")):
         if not isinstance(pair, list) or len(pair) != 2:
             continue  # its section has been told so
@@ -24,7 +24,7 @@ def read_stalk(reading: Reading, document: Document) -> tuple[Turn, ...]:
         elif turns and time_s <= turns[-1].time_s:
             reading.note(document, ("stalk", index), f"time {time_s} s must come after {turns[-1].time_s} s")
         else:
-            turns.append(Turn(float(time_s), move))
+            turns.append(StalkTurn(float(time_s), move))
     return tuple(turns)
 
 

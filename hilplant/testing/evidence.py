@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bus.frame import Frame
-from hilplant.bus.protection import Checker, Protection, Verdict
+from hilplant.bus.protection import Checker, FrameCheck, Protection
 from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, STATUS_COLUMNS
 from hilplant.recording.reader import Recording, matrix
 from hilplant.runtime.loop import STOPPED
@@ -144,11 +144,11 @@ def _checked(protection: Protection | None, payloads: Sequence[bytes]) -> tuple[
     checker = Checker(protection) if protection is not None else None
     for data in payloads if checker is not None else ():
         found = checker.check(data)  # type: ignore[union-attr]
-        counter.append(found is not Verdict.WRONG_COUNTER)
-        crc.append(found is not Verdict.WRONG_CRC)
-        if found is Verdict.WRONG_COUNTER:
+        counter.append(found is not FrameCheck.WRONG_COUNTER)
+        crc.append(found is not FrameCheck.WRONG_CRC)
+        if found is FrameCheck.WRONG_COUNTER:
             checker.reset()  # type: ignore[union-attr]
             found = checker.check(data)  # type: ignore[union-attr]
-        if found is Verdict.OK:
+        if found is FrameCheck.OK:
             checker.accept()  # type: ignore[union-attr]
     return np.array(counter, np.bool_), np.array(crc, np.bool_)

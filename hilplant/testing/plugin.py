@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from hilplant.bench import Bench
     from hilplant.testing.scenario_test import ScenarioTest
     from hilplant.testing.suite import Benches
-    from hilplant.testing.wiper import Wiper
+    from hilplant.testing.wiper import WiperUnderTest
 
-_WIPER: "pytest.StashKey[Wiper]" = pytest.StashKey()
+_WIPER: "pytest.StashKey[WiperUnderTest]" = pytest.StashKey()
 _SCENARIO_FILE = re.compile(r"test_.*\.hil\.ya?ml")
 
 
@@ -51,21 +51,21 @@ def hilplant_bench(request: pytest.FixtureRequest) -> "Bench":
 
 
 @pytest.fixture
-def wiper(request: pytest.FixtureRequest, hilplant_bench: "Bench") -> Iterator["Wiper"]:
+def wiper(request: pytest.FixtureRequest, hilplant_bench: "Bench") -> Iterator["WiperUnderTest"]:
     """A plant in virtual time; the test is the ECU."""
     yield from _given(request, hilplant_bench, stand_in=False)
 
 
 @pytest.fixture
-def car(request: pytest.FixtureRequest, hilplant_bench: "Bench") -> Iterator["Wiper"]:
+def car(request: pytest.FixtureRequest, hilplant_bench: "Bench") -> Iterator["WiperUnderTest"]:
     """A plant with the stand-in ECU before it, in virtual time; the test is the driver."""
     yield from _given(request, hilplant_bench, stand_in=True)
 
 
-def _given(request: pytest.FixtureRequest, bench: "Bench", stand_in: bool) -> Iterator["Wiper"]:
-    from hilplant.testing.wiper import Wiper
+def _given(request: pytest.FixtureRequest, bench: "Bench", stand_in: bool) -> Iterator["WiperUnderTest"]:
+    from hilplant.testing.wiper import WiperUnderTest
 
-    made = Wiper(bench, stand_in)
+    made = WiperUnderTest(bench, stand_in)
     request.node.stash[_WIPER] = made
     yield made
     if made.has_bus:
@@ -99,11 +99,11 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "ScenarioFile | None":
     """Collect `test_*.hil.yaml`: scenarios with an `expect` section."""
     if _SCENARIO_FILE.fullmatch(file_path.name):
-        return ScenarioFile.from_parent(parent, path=file_path)
+        return CollectedScenario.from_parent(parent, path=file_path)
     return None
 
 
-class ScenarioFile(pytest.File):
+class CollectedScenario(pytest.File):
     """A scenario file: one test."""
 
     def collect(self) -> Iterator["ScenarioItem"]:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _DEGREES = "_deg"
 
 
-class Wiper:
+class WiperUnderTest:
     """A bench in virtual time, in front of a test that is the ECU; with `stand_in` the stand-in ECU joins.
 
     Times are seconds of the plant, counted from its first tick. A signal is one of the plant or of the bench's
@@ -185,7 +185,7 @@ class Wiper:
 class Expecting:
     """What must hold while a test runs: the keys of a scenario's `expect`, as methods; judged when the test ends."""
 
-    def __init__(self, wiper: Wiper) -> None:
+    def __init__(self, wiper: WiperUnderTest) -> None:
         self._wiper = wiper
         self.bound: list[Expectation] = []
 

@@ -15,7 +15,7 @@ from hilplant.control.closed_loop import observe_rows
 from hilplant.control.design import armature, model
 from hilplant.jit import uninterrupted
 from hilplant.models.records import Brush, Motor, Parameters
-from hilplant.thesis.control_network import Floats, Record, record
+from hilplant.thesis.control_network import Floats, NetworkRecord, record
 
 OFF = 0.2
 ESTIMATORS = ("network", "observer", "observer, resistance adapting")
@@ -91,7 +91,7 @@ def estimator_table(bench: Bench, paths: tuple[Floats, Floats]) -> list[Case]:
     return cases
 
 
-def estimated(bench: Bench, data: Record, fast: bool, path: Floats) -> dict[str, Floats]:
+def estimated(bench: Bench, data: NetworkRecord, fast: bool, path: Floats) -> dict[str, Floats]:
     """Return the crank speeds [rad/s] that each estimator makes of a recording."""
     period_s = bench.parameters.step_s
     believed = model(armature(bench.parameters.motor, fast), period_s, BLIND_NOISE, False)
@@ -104,7 +104,7 @@ def estimated(bench: Bench, data: Record, fast: bool, path: Floats) -> dict[str,
     return speeds
 
 
-def network_speeds(data: Record, path: Floats) -> Floats:
+def network_speeds(data: NetworkRecord, path: Floats) -> Floats:
     """Return the network's speeds [rad/s] for a whole recording; the loop's own is ``control.network``."""
     before = np.concatenate([[0.0], data.voltage_v[:-1]])
     x, y = ((v - middle) / half for v, (middle, half) in zip((before, data.current_a), path[:2, :2], strict=True))
@@ -112,7 +112,7 @@ def network_speeds(data: Record, path: Floats) -> Floats:
     return np.asarray(path[2, 0] + path[2, 1] * (hidden @ path[3:, 3] + path[0, 3]))
 
 
-def error(speeds: Floats, data: Record, bench: Bench) -> Error:
+def error(speeds: Floats, data: NetworkRecord, bench: Bench) -> Error:
     """Return the error of estimated speeds once the adapting observer has settled."""
     difference = (speeds - data.speed_rad_s)[round(FROM_S / bench.parameters.step_s) :]
     return Error(float(np.sqrt(np.mean(difference**2))), float(np.abs(difference).max()), float(np.mean(difference)))

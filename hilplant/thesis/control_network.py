@@ -26,7 +26,7 @@ STAIRS_V, HOLD_S = (2.0, 5.0, 8.0, 11.0, 14.0, 17.0, 20.0, 12.0, 6.0, 15.0, 9.0,
 SPARSE = 20
 
 
-class Record(NamedTuple):
+class NetworkRecord(NamedTuple):
     """A recording of the motor: voltage [V], current [A], park contact, speed of the crank [rad/s]; one a tick."""
 
     voltage_v: Floats
@@ -35,7 +35,7 @@ class Record(NamedTuple):
     speed_rad_s: Floats
 
 
-def record(bench: Bench, parameters: Parameters, voltages_v: Floats, wetness: Floats, fast: bool) -> Record:
+def record(bench: Bench, parameters: Parameters, voltages_v: Floats, wetness: Floats, fast: bool) -> NetworkRecord:
     """Run the plant open-loop with given voltages and wetness, one a tick."""
     rows = np.tile(bench.input_row, (voltages_v.size, 1))
     for name, values in (("relay_on", 1.0), ("relay_fast", float(fast)), ("supply_v", voltages_v), ("screen", wetness)):
@@ -43,17 +43,17 @@ def record(bench: Bench, parameters: Parameters, voltages_v: Floats, wetness: Fl
     outputs = np.empty((len(rows), len(OUTPUTS)))
     simulate_rows(initial_state(parameters, bench.initial), rows, pack(parameters), bench.tables, outputs)
     names = ("current_a", "park_contact", "crank_speed_rad_s")
-    return Record(voltages_v, *(outputs[:, OUTPUT_INDEX[name]].copy() for name in names))
+    return NetworkRecord(voltages_v, *(outputs[:, OUTPUT_INDEX[name]].copy() for name in names))
 
 
-def training_record(bench: Bench, fast: bool) -> Record:
+def training_record(bench: Bench, fast: bool) -> NetworkRecord:
     """Return stairs of voltage, first on a wet screen, then on a dry one."""
     stairs = np.repeat(np.array(STAIRS_V), round(HOLD_S / bench.parameters.step_s))
     wetness = np.repeat([1.0, 0.0], stairs.size)
     return record(bench, bench.parameters, np.tile(stairs, 2), wetness, fast)
 
 
-def train(data: Record, neurons: int, seed: int = 1) -> Floats:
+def train(data: NetworkRecord, neurons: int, seed: int = 1) -> Floats:
     """Fit a path by Levenberg-Marquardt from seeded weights; return it as ``control.network`` reads it.
 
     Voltage and current belong together as the controller sees them: the voltage is the one that was in force up to

@@ -4,10 +4,10 @@ import re
 from typing import Any
 
 from hilplant.thesis.control_estimation import ESTIMATORS, Case
-from hilplant.thesis.control_search import Found
+from hilplant.thesis.control_search import FoundGains
 from hilplant.thesis.control_study import OURS, Study
 from hilplant.thesis.control_test import Metrics
-from hilplant.thesis.control_thesis import ROWS, Row, factors, far_off
+from hilplant.thesis.control_thesis import ROWS, ThesisRow, factors, far_off
 from hilplant.thesis.text_table import Part, TextTable
 
 _TITLES = {
@@ -99,7 +99,7 @@ def _duties(study: Study) -> TextTable:
     return TextTable("An hour of mixed rain", ["", *_DUTY_COLUMNS], rows, numbers=True)
 
 
-def found_report(found: list[Found]) -> list[Part]:
+def found_report(found: list[FoundGains]) -> list[Part]:
     """Return what the search found, as the catalogue keeps it."""
     rows = [[f"{one.rule}_{one.aim}", *_cells(one.metrics.row())] for one in found]
     lines = [f'("{one.rule}", "{one.aim}"): {one.gains},' for one in found]
@@ -140,7 +140,7 @@ def _flat_metrics(key: str, result: Metrics) -> dict[str, float]:
     return flat | {f"{key}_worst_rad_s": result.worst_rad_s, f"{key}_mean_rad_s": result.mean_rad_s}
 
 
-def _flat_row(row: Row) -> dict[str, float]:
+def _flat_row(row: ThesisRow) -> dict[str, float]:
     numbers = row.numbers
     return _flat_metrics(_key(row.name), Metrics(numbers[0], numbers[1], numbers[2::2], numbers[3::2]))
 

@@ -22,7 +22,7 @@ BOUNDS = ((-1.5, 0.8), (-2.0, 2.0), (-2.0, 2.0), (-2.0, 2.0), (-1.0, 3.0), (-1.0
 PENALTY = 50.0
 
 
-class Found(NamedTuple):
+class FoundGains(NamedTuple):
     """What a search found: gains as :func:`~hilplant.control.catalogue.searched_neuron` takes them, and the cost."""
 
     rule: str
@@ -41,7 +41,7 @@ def cost(result: Metrics, highest_overshoot_rad_s: float) -> float:
     return result.rise_s + result.worst_rad_s + PENALTY * beyond
 
 
-def search(bench: Bench, rule: str, aim: str, seed: int = 1, generations: int = 25) -> Found:
+def search(bench: Bench, rule: str, aim: str, seed: int = 1, generations: int = 25) -> FoundGains:
     """Search the gains of one rule for one aim, from the source's gains on; the same seed finds the same gains."""
     motor, period_s, drive = bench.parameters.motor, bench.step_ns / SECOND_NS, thesis_drive(bench)
     runs = 0
@@ -63,7 +63,7 @@ def search(bench: Bench, rule: str, aim: str, seed: int = 1, generations: int = 
         polish=False,
     )
     gains = tuple(float(f"{value:.4g}") for value in 10.0**answer.x)
-    return Found(rule, aim, gains, float(answer.fun), result(np.log10(gains)), runs)
+    return FoundGains(rule, aim, gains, float(answer.fun), result(np.log10(gains)), runs)
 
 
 def source_gains(rule: str, aim: str) -> np.ndarray:
@@ -73,6 +73,6 @@ def source_gains(rule: str, aim: str) -> np.ndarray:
     return np.log10([gain, 1.0, 1.5, 1.0, *weights])
 
 
-def search_all(bench: Bench, seed: int = 1, generations: int = 25) -> list[Found]:
+def search_all(bench: Bench, seed: int = 1, generations: int = 25) -> list[FoundGains]:
     """Search each rule for each aim."""
     return [search(bench, rule, aim, seed, generations) for rule in RULES for aim in AIMS]

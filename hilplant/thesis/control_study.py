@@ -21,7 +21,7 @@ from hilplant.signals import INPUT_INDEX
 from hilplant.thesis.control_estimation import CHANGES, OFF, Case, estimated, estimator_table, full_range
 from hilplant.thesis.control_network import Floats, record, trained_paths
 from hilplant.thesis.control_rain import Duty, controlled_duty, rain, two_speed_duty
-from hilplant.thesis.control_test import STATES, Drive, Metrics, Run, metrics, run_drive, thesis_drive
+from hilplant.thesis.control_test import STATES, DriveRun, Metrics, SpeedProfile, metrics, run_drive, thesis_drive
 from hilplant.thesis.control_thesis import ROWS, Order, controller_of, orders
 from hilplant.units import SECOND_NS
 
@@ -44,14 +44,14 @@ SENSORLESS = (
 class Study(NamedTuple):
     """Everything that the study found."""
 
-    runs: dict[str, Run]
+    runs: dict[str, DriveRun]
     results: dict[str, Metrics]
     orders: dict[str, Order]
     blind: dict[str, Metrics]
     paths: tuple[Floats, Floats]
     cases: list[Case]
     duties: dict[str, Duty]
-    stages: Run
+    stages: DriveRun
 
 
 def study_bench(name: str) -> Bench:
@@ -79,7 +79,7 @@ def run_study(bench: Bench) -> Study:
     return Study(runs, results, orders(results), blind, paths, estimator_table(bench, paths), duties, stages)
 
 
-def _blind(bench: Bench, drive: Drive, paths: tuple[Floats, Floats]) -> dict[str, Metrics]:
+def _blind(bench: Bench, drive: SpeedProfile, paths: tuple[Floats, Floats]) -> dict[str, Metrics]:
     """Run the test without a speed sensor: as it is, and on a plant whose resistance is 20 % higher."""
     motor, period_s = bench.parameters.motor, bench.step_ns / SECOND_NS
     tables = Tables(gain_table(), *paths)
@@ -103,13 +103,13 @@ def _duties(bench: Bench, cascade: Controller) -> dict[str, Duty]:
     }
 
 
-def stages_drive(bench: Bench) -> Drive:
+def stages_drive(bench: Bench) -> SpeedProfile:
     """Return a reference that rises beyond what the slow brush can do, and falls again, on a wet screen."""
     time_s = np.arange(round(16.0 * SECOND_NS / bench.step_ns)) * (bench.step_ns / SECOND_NS)
     reference = math.pi * np.interp(time_s, [0.0, 3.0, 7.0, 9.0, 13.0, 16.0], [0.8, 0.8, 2.2, 2.2, 0.8, 0.8])
     rows = np.tile(bench.input_row, (time_s.size, 1))
     rows[:, INPUT_INDEX["screen"]] = 1.0
-    return Drive(reference, rows, 0.0)
+    return SpeedProfile(reference, rows, 0.0)
 
 
 def draw(study: Study, bench: Bench, folder: Path) -> list[str]:

@@ -61,7 +61,7 @@ class Metrics(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class DriveRun:
     """One controller's way through a drive: time, reference, outputs and trace, one row a tick."""
 
     time_s: Floats
@@ -76,7 +76,7 @@ class Run:
         return self.outputs[:, OUTPUT_INDEX[name]]
 
 
-class Drive(NamedTuple):
+class SpeedProfile(NamedTuple):
     """What a controller is put through: reference [rad/s] and inputs of each tick, and where the crank starts."""
 
     reference_rad_s: Floats
@@ -84,7 +84,7 @@ class Drive(NamedTuple):
     start_rad: float
 
 
-def thesis_drive(bench: Bench, start_rad: float = START_RAD) -> Drive:
+def thesis_drive(bench: Bench, start_rad: float = START_RAD) -> SpeedProfile:
     """Return the test of section 7.2 at the bench's step."""
     time_s = np.arange(round(SECONDS * SECOND_NS / bench.step_ns)) * (bench.step_ns / SECOND_NS)
     reference, wetness = np.empty_like(time_s), np.empty_like(time_s)
@@ -93,10 +93,10 @@ def thesis_drive(bench: Bench, start_rad: float = START_RAD) -> Drive:
         reference[within], wetness[within] = factor * math.pi, wet
     rows = np.tile(bench.input_row, (time_s.size, 1))
     rows[:, INPUT_INDEX["screen"]] = wetness
-    return Drive(reference, rows, start_rad)
+    return SpeedProfile(reference, rows, start_rad)
 
 
-def run_drive(bench: Bench, controller: Controller, drive: Drive, tables: Tables | None = None) -> Run:
+def run_drive(bench: Bench, controller: Controller, drive: SpeedProfile, tables: Tables | None = None) -> DriveRun:
     """Run a bench's plant under a controller, in one compiled loop."""
     ticks = drive.reference_rad_s.size
     state = initial_state(bench.parameters, bench.initial | {"crank_angle_rad": drive.start_rad})
@@ -106,10 +106,10 @@ def run_drive(bench: Bench, controller: Controller, drive: Drive, tables: Tables
     with uninterrupted():
         run_rows(POWER_ON, controller, tables or without_network(), plant, rows)
     time_s = np.arange(ticks, dtype=np.float64) * np.float64(bench.step_ns / SECOND_NS)
-    return Run(time_s, drive.reference_rad_s, outputs, trace)
+    return DriveRun(time_s, drive.reference_rad_s, outputs, trace)
 
 
-def metrics(run: Run, settling_s: float = SETTLING_S) -> Metrics:
+def metrics(run: DriveRun, settling_s: float = SETTLING_S) -> Metrics:
     """Return overshoot, rise time and the errors of the five states of a run of :func:`thesis_drive`.
 
     The rise time is the source's, from zero to the first tick at the reference (infinite if it is never met). Of
@@ -127,7 +127,7 @@ def metrics(run: Run, settling_s: float = SETTLING_S) -> Metrics:
     return Metrics(overshoot(run, speed), rise, tuple(low), tuple(high))
 
 
-def overshoot(run: Run, speed: Floats) -> float:
+def overshoot(run: DriveRun, speed: Floats) -> float:
     """Return by how much [rad/s] the first turn goes beyond the reference and beyond what the settled ripple does.
 
     The source lists no overshoot for controllers whose ripple is above the reference all the time, so it does not

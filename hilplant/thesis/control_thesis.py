@@ -12,7 +12,7 @@ from hilplant.models.records import Motor
 from hilplant.thesis.control_test import Metrics
 
 
-class Row(NamedTuple):
+class ThesisRow(NamedTuple):
     """One row of the source: where it stands, who it is, and its twelve numbers in the source's order."""
 
     table: str
@@ -46,9 +46,9 @@ _NUMBERS = """
 """
 
 
-def _row(line: str) -> Row:
+def _row(line: str) -> ThesisRow:
     table, rule, gain, *numbers = line.split()
-    return Row(table, rule, float(gain), table == "7-6", tuple(map(float, numbers)))
+    return ThesisRow(table, rule, float(gain), table == "7-6", tuple(map(float, numbers)))
 
 
 ROWS = tuple(_row(line) for line in _NUMBERS.strip().splitlines())
@@ -60,20 +60,20 @@ FIRST_ERROR = COLUMNS.index("state 1 low")
 STATE_3 = (COLUMNS.index("state 3 low"), COLUMNS.index("state 3 high"))
 
 
-def controller_of(row: Row, motor: Motor, period_s: float) -> Controller:
+def controller_of(row: ThesisRow, motor: Motor, period_s: float) -> Controller:
     """Return the controller of a row."""
     if row.rule == "pid":
         return pid(motor, period_s, THESIS_PID)
     return neuron(motor, period_s, row.rule, row.gain, row.fuzzy)
 
 
-def factors(row: Row, ours: Metrics) -> dict[str, float]:
+def factors(row: ThesisRow, ours: Metrics) -> dict[str, float]:
     """Return ours over the source's for each column; a column that is 0 in the source is left out."""
     pairs = zip(COLUMNS, ours.row(), row.numbers, strict=True)
     return {column: mine / its for column, mine, its in pairs if its > 0.0}
 
 
-def far_off(row: Row, ours: Metrics, limit: float = 3.0) -> dict[str, float]:
+def far_off(row: ThesisRow, ours: Metrics, limit: float = 3.0) -> dict[str, float]:
     """Return the columns in which ours is not within a factor of `limit` of the source's."""
     return {name: f for name, f in factors(row, ours).items() if not 1.0 / limit <= f <= limit}
 

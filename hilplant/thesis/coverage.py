@@ -10,10 +10,10 @@ from hilplant.bench import Bench
 from hilplant.identify.experiment import Run
 from hilplant.identify.local_search import search
 from hilplant.identify.parameters import Choice, chosen
-from hilplant.identify.profile import Interval, profile
-from hilplant.identify.residuals import Problem, expected_noise
+from hilplant.identify.profile import ConfidenceInterval, profile
+from hilplant.identify.residuals import LeastSquares, expected_noise
 from hilplant.identify.run_of_data import make_run
-from hilplant.identify.twin import Condition, Spoiling, recorded
+from hilplant.identify.twin import Spoiling, TwinCondition, recorded
 from hilplant.identify.uncertainty import spread, verdicts
 from hilplant.measurements.measurement import Samples
 
@@ -40,7 +40,7 @@ class Coverage(NamedTuple):
     deviation: dict[str, float]
 
 
-def twin_runs(bench: Bench, conditions: Sequence[Condition], how: Spoiling, seed: int) -> list[Run]:
+def twin_runs(bench: Bench, conditions: Sequence[TwinCondition], how: Spoiling, seed: int) -> list[Run]:
     """Return what identification gets of one seed: its own start and switching in each recording, its own noise."""
     return [
         make_run(recorded(bench, condition, how, 1000 * seed + place), bench, condition.screen)
@@ -58,7 +58,7 @@ def trial(bench: Bench, runs: Sequence[Run], seed: int, part: float = 0.2) -> Tr
     """Run the last stage alone, with no knowledge of the truth but a start that is off by `part`."""
     choice = chosen(bench.parameter_row)
     start = off_start(choice, seed, part)
-    found = search(Problem(runs, choice, bench.tables, expected_noise(runs), np.abs(start)), start)
+    found = search(LeastSquares(runs, choice, bench.tables, expected_noise(runs), np.abs(start)), start)
     known = spread(found)
     said = verdicts(found, known)
     truth = dict(zip(choice.names, choice.values, strict=True))
@@ -71,13 +71,13 @@ def trial(bench: Bench, runs: Sequence[Run], seed: int, part: float = 0.2) -> Tr
     )
 
 
-def holds(interval: Interval, value: float) -> bool:
+def holds(interval: ConfidenceInterval, value: float) -> bool:
     """Say whether a value lies inside; a side that is open holds everything."""
     return bool((interval.low is None or interval.low <= value) and (interval.high is None or value <= interval.high))
 
 
 def trials(
-    bench: Bench, conditions: Sequence[Condition], how: Spoiling, seeds: Iterable[int],
+    bench: Bench, conditions: Sequence[TwinCondition], how: Spoiling, seeds: Iterable[int],
     done: Callable[[Trial], None] = lambda _: None,
 ) -> list[Trial]:  # fmt: skip
     """Run a trial for each seed."""

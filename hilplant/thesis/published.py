@@ -11,7 +11,7 @@ import numpy as np
 
 from hilplant import resources
 from hilplant.checked_yaml.yaml_reader import read_text
-from hilplant.identify.srivc import Fit, Stretch, fit, simulated
+from hilplant.identify.srivc import Stretch, TransferFit, fit, simulated
 from hilplant.identify.transfer_function import (
     Coefficients,
     Equivalent,
@@ -28,7 +28,7 @@ MODES = ("slow", "fast")
 _TRANSFER_FUNCTION = ("b1", "b0", "a1", "a0")
 
 
-class Line(NamedTuple):
+class PublishedNumber(NamedTuple):
     """One printed number beside ours.
 
     `bounds` are what the printed inputs can give within their rounding; equal where the inputs are exact.
@@ -53,12 +53,12 @@ class Line(NamedTuple):
         return "rounding" if low - slack <= float(self.printed) <= high + slack else "no"
 
 
-def published_lines() -> list[Line]:
+def published_lines() -> list[PublishedNumber]:
     """Return every line of Tables 5-2 to 5-5, in their order."""
     return [*table_5_2(), *table_5_3(), *table_5_4(), *table_5_5()]
 
 
-def table_5_2() -> Iterator[Line]:
+def table_5_2() -> Iterator[PublishedNumber]:
     """Compare Table 5-2: coefficients and parameters from (5.11), (5.12), and both from data of the simulated motor."""
     data = _read("table_5_2.yaml")
     yield from _from_transfer_functions("5-2", data)
@@ -68,7 +68,9 @@ def table_5_2() -> Iterator[Line]:
         pairs = zip(_TRANSFER_FUNCTION, found, strict=True)
         for name, value in pairs:
             remark = "identified here from data of the simulated motor"
-            yield Line("5-2", f"{mode} {name} identified", printed[name], value, _identified_bounds(value), remark)
+            yield PublishedNumber(
+                "5-2", f"{mode} {name} identified", printed[name], value, _identified_bounds(value), remark
+            )
 
 
 def _identified_bounds(value: float) -> Bounds:
@@ -76,7 +78,7 @@ def _identified_bounds(value: float) -> Bounds:
     return value * (1.0 - 1e-3), value * (1.0 + 1e-3)
 
 
-def identified_from_simulation(data: Any, mode: str) -> Fit:
+def identified_from_simulation(data: Any, mode: str) -> TransferFit:
     """Return what identification makes of the motor of Table 5-2: steps of the voltage, 20 kHz, without noise."""
     brush = data["motor"][mode]
     drag, inertia = float(data["gamma_n_m_s"]), float(data["motor"]["inertia_kg_m2"])
@@ -88,26 +90,26 @@ def identified_from_simulation(data: Any, mode: str) -> Fit:
     return fit([Stretch(volts, current, np.ones(len(volts), dtype=np.bool_))], period_s)
 
 
-def table_5_3() -> Iterator[Line]:
+def table_5_3() -> Iterator[PublishedNumber]:
     """Compare Table 5-3: gamma, coefficients and parameters from (5.13) to (5.15)."""
     data = _read("table_5_3.yaml")
     gamma = load_constant()
-    yield Line("5-3", "gamma [N m s/rad]", data["gamma_n_m_s"], gamma, (gamma, gamma), "(5.15)")
+    yield PublishedNumber("5-3", "gamma [N m s/rad]", data["gamma_n_m_s"], gamma, (gamma, gamma), "(5.15)")
     yield from _from_transfer_functions("5-3", data)
 
 
-def _from_transfer_functions(table: str, data: Any) -> Iterator[Line]:
+def _from_transfer_functions(table: str, data: Any) -> Iterator[PublishedNumber]:
     drag = float(data["gamma_n_m_s"])
     for mode in MODES:
         texts = [data["transfer_function"][mode][name] for name in _TRANSFER_FUNCTION]
         found = coefficients(TransferFunction(*map(float, texts)))
         for index, name in enumerate(Coefficients._fields):
             bounds = reachable(_coefficient(index), texts)
-            yield Line(table, f"{mode} {name}", data["coefficients"][mode][name], found[index], bounds)
+            yield PublishedNumber(table, f"{mode} {name}", data["coefficients"][mode][name], found[index], bounds)
         motor = by_load(found, drag)
         for index, name in enumerate(Equivalent._fields[:4]):
             bounds = reachable(_parameter(index, drag), texts)
-            yield Line(table, f"{mode} {name}", data["parameters"][mode][name], motor[index], bounds)
+            yield PublishedNumber(table, f"{mode} {name}", data["parameters"][mode][name], motor[index], bounds)
 
 
 def _coefficient(index: int) -> Callable[..., float]:
@@ -134,7 +136,7 @@ class _Reading(NamedTuple):
         return self.constant(float(self.current_a), float(self.speed_rad_s))
 
 
-def table_5_4() -> Iterator[Line]:
+def table_5_4() -> Iterator[PublishedNumber]:
     """Compare Table 5-4: the back-EMF constants (5.18), and their averages."""
     printed = _read("table_5_4_constants.yaml")["constant_v_s"]
     for mode in MODES:
@@ -142,10 +144,10 @@ def table_5_4() -> Iterator[Line]:
         bounds = [reachable(row.constant, (row.current_a, row.speed_rad_s)) for row in rows]
         for row, limits in zip(rows, bounds, strict=True):
             text = printed[mode][f"{row.voltage_v:g}"]
-            yield Line("5-4", f"{mode} K at {row.voltage_v:g} V", text, row.value, limits, _stray(row, rows))
+            yield PublishedNumber("5-4", f"{mode} K at {row.voltage_v:g} V", text, row.value, limits, _stray(row, rows))
         low, high = np.mean(bounds, axis=0)
         mean = float(np.mean([row.value for row in rows]))
-        yield Line("5-4", f"{mode} K average", printed[mode]["average"], mean, (float(low), float(high)))
+        yield PublishedNumber("5-4", f"{mode} K average", printed[mode]["average"], mean, (float(low), float(high)))
 
 
 def _readings(mode: str) -> list[_Reading]:
@@ -166,7 +168,7 @@ def _stray(row: _Reading, rows: Sequence[_Reading]) -> str:
     return f"{100.0 * off:+.1f} % off the other rows, which agree: its speed is doubtful"
 
 
-def table_5_5() -> Iterator[Line]:
+def table_5_5() -> Iterator[PublishedNumber]:
     """Compare Table 5-5: time constants and inductances (5.20)."""
     for row in _read("table_5_5.yaml")["rows"]:
         fallen = row["fallen_s"]
@@ -177,10 +179,10 @@ def table_5_5() -> Iterator[Line]:
             remark = f"{row['fallen_s']} s lies before the step; read as {fallen} s"
         tau = float(fallen) - float(row["step_s"])
         bounds = reachable(lambda step, end: end - step, [row["step_s"], fallen])
-        yield Line("5-5", f"{row['state']} time constant [s]", row["time_constant_s"], tau, bounds, remark)
+        yield PublishedNumber("5-5", f"{row['state']} time constant [s]", row["time_constant_s"], tau, bounds, remark)
         ohm = float(row["resistance_ohm"])
         scaled = bounds[0] * ohm, bounds[1] * ohm
-        yield Line("5-5", f"{row['state']} inductance [H]", row["inductance_henry"], tau * ohm, scaled)
+        yield PublishedNumber("5-5", f"{row['state']} inductance [H]", row["inductance_henry"], tau * ohm, scaled)
 
 
 def _exchanged(text: str) -> str:
@@ -189,7 +191,7 @@ def _exchanged(text: str) -> str:
     return f"{whole}.{decimals[1]}{decimals[0]}{decimals[2:]}"
 
 
-def as_table(lines: Sequence[Line]) -> str:
+def as_table(lines: Sequence[PublishedNumber]) -> str:
     """Return the lines as text for a terminal."""
     rows = [("table", "quantity", "printed", "ours", "inputs can give", "agrees", "")]
     for line in lines:
@@ -200,7 +202,7 @@ def as_table(lines: Sequence[Line]) -> str:
     return "\n".join("  ".join(cells).rstrip() for cells in padded)
 
 
-def figures(lines: Sequence[Line]) -> dict[str, float | str]:
+def figures(lines: Sequence[PublishedNumber]) -> dict[str, float | str]:
     """Return the numbers for a JSON file: ours under a flat name, and how many lines agree in which way."""
     flat: dict[str, float | str] = {
         f"table_{line.table}_{line.name}".replace("-", "_").replace(" ", "_").split("_[")[0].lower(): line.ours

@@ -83,7 +83,7 @@ SCENARIOS: dict[str, Callable[[], Floats]] = {
 
 
 @dataclass(frozen=True)
-class Errors:
+class SolverErrors:
     """RMS of the difference between step and reference in percent of the signal's range, and both runs."""
 
     current_percent: float
@@ -108,11 +108,11 @@ def run_step(parameters: Parameters, tables: Floats, input_rows: Floats, state: 
 
 def compare(
     parameters: Parameters, tables: Floats, channels: Channels, input_rows: Floats, slowest_rad_s: float = 0.005
-) -> Errors:
+) -> SolverErrors:
     """Return the errors of the step on `tables` against the reference on `channels`, from rest at park."""
     outputs = run_step(parameters, tables, input_rows)
     truth = Reference(parameters, channels, slowest_rad_s).run(input_rows)
-    return Errors(*errors_percent(outputs, truth), outputs, truth)
+    return SolverErrors(*errors_percent(outputs, truth), outputs, truth)
 
 
 def errors_percent(outputs: Floats, truth: Floats) -> tuple[float, float, float]:

@@ -14,7 +14,7 @@ from hilplant.checked_yaml.yaml_reader import read_text
 from hilplant.identify.cost import cost_of
 from hilplant.identify.experiment import COLUMNS, Run
 from hilplant.identify.first_stage import first_stage
-from hilplant.identify.genetic import Settings, Space, order_of
+from hilplant.identify.genetic import SearchSettings, Space, order_of
 from hilplant.identify.optimisers import OPTIMISERS
 from hilplant.identify.parameters import Choice, chosen, search_space
 from hilplant.identify.three_stages import Identified, Task, identify
@@ -69,7 +69,7 @@ def _read(kind: str, name: str) -> Any:
     return read_text(path.read_text(encoding="utf-8"), name).data
 
 
-def three_stages(bench: Bench, seed: int, settings: Settings, search: str = "genetic") -> Full:
+def three_stages(bench: Bench, seed: int, settings: SearchSettings, search: str = "genetic") -> Full:
     """Identify twin data of one noise from what was published, and hold it against the truth."""
     conditions = thesis_conditions(FITTED_V)
     fitted = twin_runs(bench, conditions, NOISE, seed)
@@ -103,7 +103,7 @@ def _judged(found: Identified, first_s: float) -> Full:
     return Full(found, first_s, ratio, max(errors), inside, len(pairs))
 
 
-def full_lines(bench: Bench, seeds: int, settings: Settings, figures: dict[str, Any]) -> Iterator[str]:
+def full_lines(bench: Bench, seeds: int, settings: SearchSettings, figures: dict[str, Any]) -> Iterator[str]:
     """Run all three stages for some noises; figures go beside the lines."""
     done = []
     for seed in range(1, seeds + 1):
@@ -147,7 +147,7 @@ def coverage_lines(bench: Bench, seeds: int, figures: dict[str, Any]) -> Iterato
     )
 
 
-def comparison_lines(bench: Bench, settings: Settings, figures: dict[str, Any]) -> Iterator[str]:
+def comparison_lines(bench: Bench, settings: SearchSettings, figures: dict[str, Any]) -> Iterator[str]:
     """Put all global searches beside each other, with the same data, space and number of evaluations."""
     runs = twin_runs(bench, thesis_conditions(FITTED_V), NOISE, 1)
     choice = chosen(bench.parameter_row)
@@ -220,7 +220,7 @@ def _hold(inside: str, told: str, figures: dict[str, Any]) -> bool:
 def twin_study(bench: Bench, seeds: tuple[int, int], compare: bool, say: Say) -> tuple[bool, dict[str, Any]]:
     """Run everything; `seeds` are how many noises for the last stage and for all three."""
     figures: dict[str, Any] = {}
-    settings = Settings()
+    settings = SearchSettings()
     say(speed_line(bench, figures))
     for line in full_lines(bench, seeds[1], settings, figures):
         say(line)

@@ -31,7 +31,7 @@ class Fitted(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Settings:
+class DescentSettings:
     """When to stop and how strongly to damp; `patience` is how many epochs the judged error may stay above its best."""
 
     epochs: int = 400
@@ -58,7 +58,7 @@ class Minimum:
 
 
 def minimise(
-    fitted: Fitted, start: Floats, settings: Settings, on_epoch: Callable[[int, float], None] | None = None
+    fitted: Fitted, start: Floats, settings: DescentSettings, on_epoch: Callable[[int, float], None] | None = None
 ) -> Minimum:
     """Return the best weights on the way down from `start`, by the data kept back.
 
@@ -87,7 +87,7 @@ def minimise(
     return replace(best, epochs=epoch)
 
 
-def _descent(fitted: Fitted, start: Floats, settings: Settings) -> Iterator[Floats]:
+def _descent(fitted: Fitted, start: Floats, settings: DescentSettings) -> Iterator[Floats]:
     """Yield the weights after each step, until no step helps or the last ten together hardly did."""
     weights, damping = start, settings.first_damping
     costs: list[float] = []
@@ -103,7 +103,9 @@ def _descent(fitted: Fitted, start: Floats, settings: Settings) -> Iterator[Floa
             return
 
 
-def _step(fitted: Fitted, weights: Floats, damping: float, settings: Settings) -> tuple[Floats, float, float] | None:
+def _step(
+    fitted: Fitted, weights: Floats, damping: float, settings: DescentSettings
+) -> tuple[Floats, float, float] | None:
     """Return weights, damping and cost after a step that lowers the cost; None when none does."""
     decay, ones = settings.decay, np.eye(len(weights))
     error, hessian, gradient = fitted.normal(weights)

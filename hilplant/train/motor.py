@@ -13,8 +13,8 @@ from hilplant.bench.parameter_hash import motor_hash
 from hilplant.progress import OnProgress
 from hilplant.train.motor_data import LENGTH_S, Floats, recorded
 from hilplant.train.motor_figures import path_figures
-from hilplant.train.motor_fit import Trained, train_path
-from hilplant.train.motor_search import Found, search
+from hilplant.train.motor_fit import TrainedPath, train_path
+from hilplant.train.motor_search import OneTickErrors, search
 from hilplant.train.torque import one_thread
 from hilplant.train.writing import data_hash, write_file
 
@@ -26,9 +26,9 @@ SEARCHED, SAFETY = 3000, 2.0
 class MotorNetwork:
     """A trained network: both paths, the numbers of its row, what the search found, and what is written."""
 
-    paths: tuple[Trained, ...]
+    paths: tuple[TrainedPath, ...]
     networks: Floats
-    found: Found
+    found: OneTickErrors
     content: dict[str, Any]
 
     @property
@@ -75,7 +75,7 @@ def write_network(network: MotorNetwork, path: Path) -> None:
     write_file(path, network.content)
 
 
-def _section(path: Trained) -> dict[str, Any]:
+def _section(path: TrainedPath) -> dict[str, Any]:
     weights = path.weights
     neurons = (len(weights) - 2) // 11
     inner, biases = weights[: 8 * neurons].reshape(neurons, 8), weights[8 * neurons : 9 * neurons]

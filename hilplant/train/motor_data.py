@@ -32,7 +32,7 @@ SHARES = (0.70, 0.85)
 
 
 @dataclass(frozen=True, slots=True)
-class Sequence:
+class DrivenSequence:
     """One brush's data by tick: inputs [n, 2] voltage and torque, outputs [n, 2] current and speed, both at the crank.
 
     `known[k]` says that the network is to predict tick k + 1 from tick k; elsewhere the physical model is in charge.
@@ -88,7 +88,7 @@ def excitation(bench: Bench, brush: str, seconds: float, random: np.random.Gener
     return rows
 
 
-def recorded(bench: Bench, brush: str, seconds: float, random: np.random.Generator) -> Sequence:
+def recorded(bench: Bench, brush: str, seconds: float, random: np.random.Generator) -> DrivenSequence:
     """Run the physical plant and return what the network is to learn from it.
 
     The torque is the mean one through the gear in each tick, from the integrals of (3.30) and (3.31) over the tick.
@@ -105,7 +105,7 @@ def recorded(bench: Bench, brush: str, seconds: float, random: np.random.Generat
     torque = mean_torque(voltage, current, np.unwrap(angle, period=TURN_RAD), speed, (parameters, ends))
     known = np.zeros(len(speed) - 1, dtype=bool)
     known[1:-1] = (speed[1:-2] > LEAST_RAD_S) & (speed[2:-1] > LEAST_RAD_S)
-    return Sequence(np.stack([voltage[:-1], torque], axis=1), np.stack([current, speed], axis=1)[:-1], known)
+    return DrivenSequence(np.stack([voltage[:-1], torque], axis=1), np.stack([current, speed], axis=1)[:-1], known)
 
 
 def mean_torque(

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hilplant.train.motor_fit import Trained, part_errors
+from hilplant.train.motor_fit import TrainedPath, part_errors
 
 PARTS = ("train", "validate", "test", "total")
 #: Rows of Table 6-3: mean squared errors of the parts, and seconds.
@@ -17,7 +17,7 @@ GOAL_MSE, GOAL_S = 0.003, 180.0
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class ErrorLine:
     """One row of Table 6-3: errors by part, over current [A] and crank speed [rad/s] of both brushes alike."""
 
     name: str
@@ -25,17 +25,17 @@ class Line:
     seconds: float | None
 
 
-def lines(paths: list[Trained]) -> list[Line]:
+def lines(paths: list[TrainedPath]) -> list[ErrorLine]:
     """Return the three rows."""
     open_s, closed_s = (sum(path.seconds[stage] for path in paths) for stage in (0, 1))
     return [
-        Line("open loop, open results", _errors(paths, False, False), open_s),
-        Line("open loop, closed results", _errors(paths, True, False), None),
-        Line("closed loop", _errors(paths, True, True), closed_s),
+        ErrorLine("open loop, open results", _errors(paths, False, False), open_s),
+        ErrorLine("open loop, closed results", _errors(paths, True, False), None),
+        ErrorLine("closed loop", _errors(paths, True, True), closed_s),
     ]
 
 
-def _errors(paths: list[Trained], closed: bool, after_closed: bool) -> tuple[float, float, float, float]:
+def _errors(paths: list[TrainedPath], closed: bool, after_closed: bool) -> tuple[float, float, float, float]:
     """Return the mean over both outputs of both paths, in train, validate, test and all of them."""
     found = []
     for path in paths:
@@ -46,7 +46,7 @@ def _errors(paths: list[Trained], closed: bool, after_closed: bool) -> tuple[flo
     return first, second, third, total
 
 
-def path_figures(path: Trained) -> dict[str, dict[str, float]]:
+def path_figures(path: TrainedPath) -> dict[str, dict[str, float]]:
     """Return what stands in the file: errors by part in closed loop, the variance beside them, and share explained.
 
     Only ticks that the network answers for count: where the physical model is in charge there is no error.
@@ -69,7 +69,7 @@ def path_figures(path: Trained) -> dict[str, dict[str, float]]:
     return figures
 
 
-def table(paths: list[Trained]) -> str:
+def table(paths: list[TrainedPath]) -> str:
     """Return the rows beside those of the source, with the variances that the errors are to be held against."""
     title = "mean squared error over current [A] and crank speed [rad/s] of both brushes, ours (Table 6-3)"
     rows = [title, f"{'':28}" + "".join(f"{part:>22}" for part in PARTS) + f"{'time':>22}"]

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from hilplant.progress import OnProgress, ProgressReport
-from hilplant.train.levenberg_marquardt import Settings, minimise
-from hilplant.train.motor_data import Flags, Floats, Sequence
+from hilplant.train.levenberg_marquardt import DescentSettings, minimise
+from hilplant.train.motor_data import DrivenSequence, Flags, Floats
 from hilplant.train.motor_loop import WIDTH, room_for, run, weight_count
 
 #: Neurons of each path, by the listing of Appendix F.
@@ -20,21 +20,21 @@ NOISE = 0.03
 #: The stages: for how many ticks the network reads its own answers, and when to stop. The first is the open loop, the
 #: last the closed one; those between keep it from running away.
 ENDLESS = 10**9
-OPEN = (1, Settings(epochs=40, patience=15, decay=0.0, first_damping=1e-3))
+OPEN = (1, DescentSettings(epochs=40, patience=15, decay=0.0, first_damping=1e-3))
 CLOSED = (
-    (20, Settings(epochs=15, patience=8, decay=0.0, first_damping=1e-3)),
-    (ENDLESS, Settings(epochs=60, patience=15, decay=0.0, first_damping=1e-3)),
+    (20, DescentSettings(epochs=15, patience=8, decay=0.0, first_damping=1e-3)),
+    (ENDLESS, DescentSettings(epochs=60, patience=15, decay=0.0, first_damping=1e-3)),
 )
 
 
 @dataclass(frozen=True, slots=True)
-class Scaling:
+class MotorScaling:
     """The ranges [4, 2] of voltage, torque, current and speed that are taken to -1 and 1."""
 
     ranges: Floats
 
     @classmethod
-    def of(cls, sequence: Sequence) -> "Scaling":
+    def of(cls, sequence: DrivenSequence) -> "MotorScaling":
         """Return the ranges of the ticks that training uses, with the ticks before and after them."""
         training = sequence.parts()[0]
         used = training.copy()
@@ -57,11 +57,11 @@ class Scaling:
 
 
 @dataclass
-class Fit:
+class MotorFit:
     """A path with its data, for :func:`minimise`."""
 
-    sequence: Sequence
-    scaling: Scaling
+    sequence: DrivenSequence
+    scaling: MotorScaling
     horizon: int
     noise: Floats | None = None
 
@@ -107,12 +107,12 @@ class Fit:
 
 
 @dataclass(frozen=True, slots=True)
-class Trained:
+class TrainedPath:
     """A path after training: its weights after open and after closed loop, and what each took."""
 
     brush: str
-    sequence: Sequence
-    scaling: Scaling
+    sequence: DrivenSequence
+    scaling: MotorScaling
     open_weights: Floats
     weights: Floats
     epochs: tuple[int, int]
@@ -122,7 +122,9 @@ class Trained:
     def errors(self, closed: bool, after_closed: bool = True) -> Floats:
         """Return the errors in A and rad/s of the weights after closed-loop or after open-loop training, run so."""
         horizon = ENDLESS if closed else 1
-        return Fit(self.sequence, self.scaling, horizon).errors(self.weights if after_closed else self.open_weights)
+        return MotorFit(self.sequence, self.scaling, horizon).errors(
+            self.weights if after_closed else self.open_weights
+        )
 
 
 def first_weights(neurons: int, random: np.random.Generator) -> Floats:
@@ -137,15 +139,17 @@ def first_weights(neurons: int, random: np.random.Generator) -> Floats:
     return weights
 
 
-def train_path(brush: str, sequence: Sequence, random: np.random.Generator, on_progress: OnProgress) -> Trained:
+def train_path(
+    brush: str, sequence: DrivenSequence, random: np.random.Generator, on_progress: OnProgress
+) -> TrainedPath:
     """Train a path; Ctrl-C ends it with the best weights so far."""
-    scaling = Scaling.of(sequence)
+    scaling = MotorScaling.of(sequence)
     weights = first_weights(NEURONS[brush], random)
     stages = (OPEN, *CLOSED)
     epochs, seconds, open_weights, stopped = [0, 0], [0.0, 0.0], weights, False
     for place, (horizon, settings) in enumerate(stages):
         noise = NOISE * random.standard_normal(sequence.outputs.shape) if place == 0 else None
-        stage = _Stage(Fit(sequence, scaling, horizon, noise), settings, f"{brush}, {_named(horizon)}")
+        stage = _Stage(MotorFit(sequence, scaling, horizon, noise), settings, f"{brush}, {_named(horizon)}")
         weights, stopped = stage.run(weights, on_progress)
         epochs[min(place, 1)] += stage.epochs
         seconds[min(place, 1)] += stage.seconds
@@ -154,7 +158,7 @@ def train_path(brush: str, sequence: Sequence, random: np.random.Generator, on_p
         if stopped:
             break
     counted, taken = (epochs[0], epochs[1]), (seconds[0], seconds[1])
-    return Trained(brush, sequence, scaling, open_weights, weights, counted, taken, stopped)
+    return TrainedPath(brush, sequence, scaling, open_weights, weights, counted, taken, stopped)
 
 
 def _named(horizon: int) -> str:
@@ -165,8 +169,8 @@ def _named(horizon: int) -> str:
 class _Stage:
     """One call of :func:`minimise`, which Ctrl-C ends with the best weights so far."""
 
-    fit: Fit
-    settings: Settings
+    fit: MotorFit
+    settings: DescentSettings
     name: str
     epochs: int = 0
     seconds: float = 0.0

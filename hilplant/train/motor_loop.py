@@ -46,7 +46,6 @@ def run(  # noqa: PLR0913, PLR0917
     ``room_for(weights)`` numbers.
     """
     count, total = len(outputs), len(weights)
-    neurons = (total - 2) // 11
     with_derivatives = len(jacobian) == count
     x, feedback, hidden = room[:8], room[8:16], room[16:]
     predicted[0, 0], predicted[0, 1] = outputs[0, 0], outputs[0, 1]
@@ -64,16 +63,7 @@ def run(  # noqa: PLR0913, PLR0917
         before = predicted if alone > 1 else earlier
         x[0], x[1], x[4], x[5] = inputs[k, 0], inputs[k, 1], inputs[k - 1, 0], inputs[k - 1, 1]
         x[2], x[3], x[6], x[7] = now[k, 0], now[k, 1], before[k - 1, 0], before[k - 1, 1]
-        for j in range(neurons):
-            total_in = weights[8 * neurons + j]
-            for m in range(8):
-                total_in += weights[8 * j + m] * x[m]
-            hidden[j] = math.tanh(total_in)
-        for o in range(2):
-            answer = weights[11 * neurons + o]
-            for j in range(neurons):
-                answer += weights[9 * neurons + o * neurons + j] * hidden[j]
-            predicted[k + 1, o] = answer
+        fill_answer(weights, x, hidden, predicted[k + 1])
         if with_derivatives:
             row = jacobian[k + 1]
             own_derivatives(weights, x, hidden, row, feedback)
@@ -82,6 +72,22 @@ def run(  # noqa: PLR0913, PLR0917
             if alone > 1:
                 add_passed(row, jacobian[k - 1], feedback, 2)
         alone = alone + 1 if alone + 1 < horizon else 0
+
+
+@compiled_for_threads
+def fill_answer(weights: Any, x: Any, hidden: Any, answers: Any) -> None:
+    """Fill the outputs of the hidden neurons and both answers [2] of the network to its inputs `x` [8]; all scaled."""
+    neurons = len(hidden)
+    for j in range(neurons):
+        total_in = weights[8 * neurons + j]
+        for m in range(8):
+            total_in += weights[8 * j + m] * x[m]
+        hidden[j] = math.tanh(total_in)
+    for o in range(2):
+        answer = weights[11 * neurons + o]
+        for j in range(neurons):
+            answer += weights[9 * neurons + o * neurons + j] * hidden[j]
+        answers[o] = answer
 
 
 @compiled_for_threads

@@ -27,7 +27,7 @@ TICKS = 300
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class OneTickErrors:
     """The largest differences that a search found, and where: scenario and tick of each."""
 
     scenarios: int
@@ -102,7 +102,7 @@ def wild_scenario(bench: Bench, random: np.random.Generator) -> tuple[Floats, Fl
     return pack(state), rows
 
 
-def search(bench: Bench, networks: Floats, scenarios: int, seed: int) -> Found:
+def search(bench: Bench, networks: Floats, scenarios: int, seed: int) -> OneTickErrors:
     """Try that many scenarios; scenario k is ``wild_scenario(bench, default_rng([seed, k]))``."""
     own = bench.parameters._replace(networks=networks)
     parameters = np.stack([pack(own._replace(motor_model=0.0)), pack(own._replace(motor_model=1.0))])
@@ -117,7 +117,7 @@ def search(bench: Bench, networks: Floats, scenarios: int, seed: int) -> Found:
         found = np.array(list(pool.map(tried, range(scenarios))))
     at_current, at_speed, ticks = int(found[:, 0].argmax()), int(found[:, 2].argmax()), max(1.0, found[:, 6].sum())
     ratio = bench.parameters.motor.gear_ratio
-    return Found(
+    return OneTickErrors(
         scenarios,
         int(ticks),
         float(ticks / (scenarios * TICKS)),

@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from hilplant.bench.assembly import Bench
 from hilplant.progress import OnProgress, ProgressReport, unseen
-from hilplant.train.levenberg_marquardt import Minimum, Settings, minimise
+from hilplant.train.levenberg_marquardt import DescentSettings, Minimum, minimise
 from hilplant.train.tanh_network import NetworkFit, Samples, TanhNetwork
 from hilplant.train.torque_data import Speeds, Wipes, wipes
 
@@ -21,7 +21,7 @@ TRAINED, JUDGED = 0.70, 0.15
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class TrainingPlan:
     """What to train: neurons, inputs, data, and how many starts from which seed."""
 
     neurons: int = 10
@@ -30,7 +30,7 @@ class Plan:
     points: int = 250
     starts: int = 10
     seed: int = 1
-    settings: Settings = field(default_factory=lambda: Settings(first_decay=10.0))
+    settings: DescentSettings = field(default_factory=lambda: DescentSettings(first_decay=10.0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ class Scale:
 
 
 @dataclass(frozen=True, slots=True)
-class Errors:
+class FitErrors:
     """Mean squared errors [(N m)^2] of the four sets of Table 6-1 and of the separate validation."""
 
     train: float
@@ -79,14 +79,14 @@ class Errors:
 
 
 @dataclass(frozen=True, slots=True)
-class Trained:
+class TrainedTorque:
     """A network with its scale and errors; `epochs` of its own fit."""
 
-    plan: Plan
+    plan: TrainingPlan
     network: TanhNetwork
     scale: Scale
     weights: Floats
-    errors: Errors
+    errors: FitErrors
     epochs: int
     judged: float
     interrupted: bool
@@ -96,19 +96,19 @@ class Trained:
         return self.scale.torques_of(self.network.answer(self.weights, self.scale.inputs(states, self.plan.harmonics)))
 
 
-def data_of(bench: Bench, plan: Plan) -> Data:
+def data_of(bench: Bench, plan: TrainingPlan) -> Data:
     """Return all samples of a bench."""
     speeds = plan.speeds
     kinds = (speeds.training, speeds.judging, speeds.validation)
     return Data(*(wipes(bench, kind, plan.points) for kind in kinds))
 
 
-def train(data: Data, plan: Plan, on_progress: OnProgress = unseen) -> Trained:
+def train(data: Data, plan: TrainingPlan, on_progress: OnProgress = unseen) -> TrainedTorque:
     """Return the best of several trainings; an interrupt keeps the best so far.
 
     `on_progress` is told of each epoch; starts are counted.
     """
-    best: Trained | None = None
+    best: TrainedTorque | None = None
     with one_thread():
         for start in range(plan.starts):
             trained = train_once(data, plan, start, on_progress)
@@ -128,7 +128,7 @@ def one_thread() -> Iterator[None]:
         yield
 
 
-def train_once(data: Data, plan: Plan, start: int, on_progress: OnProgress = unseen) -> Trained:
+def train_once(data: Data, plan: TrainingPlan, start: int, on_progress: OnProgress = unseen) -> TrainedTorque:
     """Return one training; its split and its first weights come from the plan's seed and the start's number."""
     random = np.random.default_rng([plan.seed, plan.neurons, start])
     torques = data.training.torques
@@ -150,18 +150,20 @@ def train_once(data: Data, plan: Plan, start: int, on_progress: OnProgress = uns
     return _with_errors(data, plan, minimum, (network, scale, sets))
 
 
-def _scaled(scale: Scale, part: Wipes, plan: Plan) -> Samples:
+def _scaled(scale: Scale, part: Wipes, plan: TrainingPlan) -> Samples:
     return Samples(scale.inputs(part.states, plan.harmonics), scale.targets(part.torques))
 
 
 def _with_errors(
-    data: Data, plan: Plan, minimum: Minimum, made: tuple[TanhNetwork, Scale, list[NDArray[np.int64]]]
-) -> Trained:
+    data: Data, plan: TrainingPlan, minimum: Minimum, made: tuple[TanhNetwork, Scale, list[NDArray[np.int64]]]
+) -> TrainedTorque:
     network, scale, sets = made
-    none = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
-    trained = Trained(plan, network, scale, minimum.weights, none, minimum.epochs, minimum.judged, minimum.interrupted)
+    none = FitErrors(0.0, 0.0, 0.0, 0.0, 0.0)
+    trained = TrainedTorque(
+        plan, network, scale, minimum.weights, none, minimum.epochs, minimum.judged, minimum.interrupted
+    )
     squared = (trained.torques(data.training.states) - data.training.torques) ** 2
     parts = [float(squared[rows].mean()) for rows in sets]
     separate = float(np.mean((trained.torques(data.validation.states) - data.validation.torques) ** 2))
-    errors = Errors(parts[0], parts[1], parts[2], float(squared.mean()), separate)
+    errors = FitErrors(parts[0], parts[1], parts[2], float(squared.mean()), separate)
     return replace(trained, errors=errors)

@@ -15,7 +15,7 @@ from hilplant.bench.parameter_hash import load_hash
 from hilplant.bench.plant_description import WholeWiper
 from hilplant.failure import Failure
 from hilplant.models import torque_samples as samples
-from hilplant.train.torque import Data, Trained
+from hilplant.train.torque import Data, TrainedTorque
 from hilplant.train.torque_data import grid, physical_torques
 from hilplant.train.writing import data_hash
 
@@ -35,7 +35,7 @@ class Dense:
     errors: Floats
 
 
-def content_of(bench: Bench, data: Data, trained: Trained, command: str) -> tuple[dict[str, Any], Dense]:
+def content_of(bench: Bench, data: Data, trained: TrainedTorque, command: str) -> tuple[dict[str, Any], Dense]:
     """Return what the file says, and the dense grid on which its bounds were found."""
     draft = _draft(bench, data, trained, command)
     numbers = TorqueFile.model_validate(draft | {"content_hash": "none yet"}).numbers()
@@ -73,7 +73,7 @@ def hash_of_load(bench: Bench) -> str:
     return load_hash(plant.mechanics.written, plant.screen, plant.blades, plant.load.points)
 
 
-def _draft(bench: Bench, data: Data, trained: Trained, command: str) -> dict[str, Any]:
+def _draft(bench: Bench, data: Data, trained: TrainedTorque, command: str) -> dict[str, Any]:
     plan, errors = trained.plan, trained.errors
     hidden, output = trained.network.parts(trained.weights)
     return {
@@ -111,7 +111,7 @@ def _draft(bench: Bench, data: Data, trained: Trained, command: str) -> dict[str
     }
 
 
-def _shares(data: Data, trained: Trained) -> dict[str, float]:
+def _shares(data: Data, trained: TrainedTorque) -> dict[str, float]:
     """Return the variance of the torques and how much of it the network explains."""
     errors = trained.errors
     found: dict[str, float] = {}

@@ -25,7 +25,7 @@ _AT_ONCE = 100
 
 
 @dataclass(slots=True)
-class Found:
+class TorqueDifferences:
     """What came of the scenarios; `where` is scenario, tick, angle, speed and wetness of the worst torque.
 
     Torques in N m, of the ticks with the network in charge; `excess` is the largest part of the bound that was used.
@@ -72,7 +72,9 @@ class Range:
     seed: int
 
 
-def search(bench: Bench, bounds: tuple[float, float], extent: Range, on_progress: OnProgress = unseen) -> Found:
+def search(
+    bench: Bench, bounds: tuple[float, float], extent: Range, on_progress: OnProgress = unseen
+) -> TorqueDifferences:
     """Run random scenarios with the network and with the physical load alone, and compare.
 
     Parameters
@@ -87,7 +89,7 @@ def search(bench: Bench, bounds: tuple[float, float], extent: Range, on_progress
         Told of the scenarios done. A KeyboardInterrupt ends the search with what was found.
 
     """
-    found = Found()
+    found = TorqueDifferences()
     try:
         for first in range(0, extent.scenarios, _AT_ONCE):
             seeds = [extent.seed + number for number in range(first, min(extent.scenarios, first + _AT_ONCE))]
@@ -115,7 +117,9 @@ def _run(bench: Bench, inputs: Floats, seeds: list[int], load: str) -> Floats:
     return simulate_batch(np.array(states), inputs, parameters, bench.tables, COLUMNS)
 
 
-def _compare_torques(found: Found, bench: Bench, bounds: tuple[float, float], run: tuple[Floats, Floats, int]) -> None:
+def _compare_torques(
+    found: TorqueDifferences, bench: Bench, bounds: tuple[float, float], run: tuple[Floats, Floats, int]
+) -> None:
     """Compare network and physical load at every angle and speed that was met with the network in charge."""
     rows, screens, first = run
     in_charge = rows[:, :, 2] == NETWORK
@@ -142,7 +146,7 @@ def _compare_torques(found: Found, bench: Bench, bounds: tuple[float, float], ru
             found.where = (first + scenario, tick, *map(float, states[worst]), float(column))
 
 
-def _compare_motions(found: Found, ours: Floats, theirs: Floats) -> None:
+def _compare_motions(found: TorqueDifferences, ours: Floats, theirs: Floats) -> None:
     currents = ours[:, :, 3] - theirs[:, :, 3]
     found.current_squared += float((currents**2).sum())
     found.current_worst_a = max(found.current_worst_a, float(np.abs(currents).max()))

@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass, replace
 import numpy as np
 
 from hilplant.progress import OnProgress, ProgressReport, unseen
-from hilplant.train.torque import Data, Plan, one_thread, train_once
+from hilplant.train.torque import Data, TrainingPlan, one_thread, train_once
 
 #: Trainings of each size.
 TRAININGS = 3
@@ -28,7 +28,7 @@ class Studied:
     seconds: float
 
 
-def study(data: Data, plan: Plan, sizes: Sequence[int], on_progress: OnProgress = unseen) -> Iterator[Studied]:
+def study(data: Data, plan: TrainingPlan, sizes: Sequence[int], on_progress: OnProgress = unseen) -> Iterator[Studied]:
     """Yield the figures of each size, with the inputs of `plan`; an interrupt ends the study.
 
     `on_progress` is told before each training.
@@ -41,7 +41,7 @@ def study(data: Data, plan: Plan, sizes: Sequence[int], on_progress: OnProgress 
             yield found
 
 
-def _size(data: Data, plan: Plan, on_progress: OnProgress) -> Studied | None:
+def _size(data: Data, plan: TrainingPlan, on_progress: OnProgress) -> Studied | None:
     begin, errors = time.perf_counter(), []
     for number in range(TRAININGS):
         on_progress(ProgressReport(f"{plan.neurons} neurons, harmonics {plan.harmonics}, trainings", number, TRAININGS))

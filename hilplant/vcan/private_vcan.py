@@ -44,7 +44,7 @@ def run_with_vcan(
         _require(user_mode_linux.PACKAGES)
         return user_mode_linux.run(command, folder, limit_s, take_stdin)
     except VcanUnavailable as error:
-        print(f"vcan: {error}", file=sys.stderr)
+        sys.stderr.write(f"vcan: {error}\n")
         return FAILED
 
 
@@ -65,7 +65,7 @@ def _require(packages: dict[str, str]) -> None:
     advice = f"apt-get install {' '.join(missing)}"
     if os.geteuid() != 0 or shutil.which("apt-get") is None:
         raise VcanUnavailable(f"programs are missing; as root: {advice}")
-    print(f"vcan: {advice} (once, about a minute)", file=sys.stderr, flush=True)
+    sys.stderr.write(f"vcan: {advice} (once, about a minute)\n")
     environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
     for step in (["update"], ["install", "-y", "--no-install-recommends", *missing]):
         words = ["apt-get", "-q", *step]

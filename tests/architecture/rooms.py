@@ -27,7 +27,7 @@ LAYERS: dict[str, str] = {
     "bench": "bench",
     "server": "runtime ecu recording",
     "offline": "c_source simulation measurements motor_bench identify train",
-    "results": "plots reports perf doctor demo",
+    "results": "plots reports testing perf doctor demo",
     "thesis": "thesis",
     "top": "cli __init__ __main__",
 }
@@ -66,6 +66,7 @@ ARROWS: dict[str, str] = {
     "plots": f"{_OFFLINE} simulation identify train",
     "reports": f"{_OFFLINE} identify train plots",
     "perf": f"{_OFFLINE} simulation c_source",
+    "testing": f"{_OFFLINE} simulation plots",
     "doctor": "extras jit",
     "demo": f"{_OFFLINE} plots",
     "thesis": f"{_OFFLINE} simulation measurements motor_bench identify train plots reports perf c_source",

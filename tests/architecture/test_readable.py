@@ -30,8 +30,7 @@ def test_no_function_is_too_long_to_see_at_once(sources: list[Any]) -> None:
         f"{source.name}: {node.name}"
         for source in sources
         for node in ast.walk(source.tree)
-        if isinstance(node, ast.FunctionDef)
-        and _lines_without_docstring(node) > MOST_FUNCTION_LINES
+        if isinstance(node, ast.FunctionDef) and _lines_without_docstring(node) > MOST_FUNCTION_LINES
     ]
     assert not long, f"more than {MOST_FUNCTION_LINES} lines: {long}"
 

@@ -9,10 +9,10 @@ from scipy.integrate import solve_ivp
 from hilplant.bench import load_bench
 from hilplant.control.catalogue import BLIND_NOISE
 from hilplant.control.closed_loop import observe_rows
-from hilplant.control.design import Noise, armature, model
+from hilplant.control.design import ObserverNoise, armature, model
 from hilplant.control.network import network_speed
 from hilplant.control.observer import correct, learn_resistance, predict
-from hilplant.control.records import AT_REST, Estimate, Measured
+from hilplant.control.records import AT_REST, Measured, SpeedEstimate
 from hilplant.thesis.control_network import train, training_record
 from hilplant.units import TURN_RAD
 
@@ -38,8 +38,8 @@ def solved(voltage: float, torque: float, state: tuple[float, float], seconds: f
 
 @pytest.mark.parametrize(("voltage", "torque"), [(12.0, 0.1), (20.0, 0.0), (5.0, 0.05)])
 def test_a_prediction_is_the_motor_s_own_motion(voltage, torque):
-    believed = model(armature(MOTOR, False), PERIOD_S, Noise(), True)
-    ahead = predict(Estimate(2.0, 150.0, torque), voltage, believed, PERIOD_S)
+    believed = model(armature(MOTOR, False), PERIOD_S, ObserverNoise(), True)
+    ahead = predict(SpeedEstimate(2.0, 150.0, torque), voltage, believed, PERIOD_S)
     assert (ahead.current_a, ahead.motor_speed_rad_s) == pytest.approx(
         tuple(solved(voltage, torque, (2.0, 150.0), PERIOD_S)), rel=1e-9
     )
@@ -59,7 +59,7 @@ def test_the_observer_finds_speed_and_load_torque_from_the_current_alone():
 
 def test_kalman_gains_are_those_of_a_filter_that_has_run_for_long():
     """The covariance recursion itself, without the Riccati equation's solver."""
-    noise, a = Noise(), armature(MOTOR, False)
+    noise, a = ObserverNoise(), armature(MOTOR, False)
     o = model(a, PERIOD_S, noise, True).observer
     transition = np.array([[o.a11, o.a12, o.a13], [o.a21, o.a22, o.a23], [0.0, 0.0, 1.0]])
     from_voltage = np.array([o.b1, o.b2, 0.0]) * noise.voltage_v
@@ -80,7 +80,7 @@ def test_a_turn_that_was_too_long_by_what_a_wrong_resistance_makes_of_it_correct
     speed = (voltage - true_ohm * current) / a.constant_v_s / a.gear_ratio
     seconds = TURN_RAD / speed
     turned = (voltage - a.resistance_ohm * current) / a.constant_v_s / a.gear_ratio * seconds
-    before = Estimate(current, 150.0, 0.1, 1.0, turned, current * seconds, 0.0)
+    before = SpeedEstimate(current, 150.0, 0.1, 1.0, turned, current * seconds, 0.0)
     assert learn_resistance(before, 1.0, a, 1.0).resistance_factor == pytest.approx(1.2)
     assert learn_resistance(before, 1.0, a, 0.5).resistance_factor == pytest.approx(1.1)
     assert learn_resistance(before, 0.0, a, 1.0).resistance_factor == 1.0
@@ -88,8 +88,8 @@ def test_a_turn_that_was_too_long_by_what_a_wrong_resistance_makes_of_it_correct
 
 
 def test_measurements_that_are_no_numbers_leave_the_observer_to_its_model():
-    believed = model(armature(MOTOR, False), PERIOD_S, Noise(), True)
-    before = Estimate(2.0, 150.0, 0.1)
+    believed = model(armature(MOTOR, False), PERIOD_S, ObserverNoise(), True)
+    before = SpeedEstimate(2.0, 150.0, 0.1)
     assert correct(before, Measured(math.nan, math.nan, 0.0), believed) == before
     rows = np.full((50, 3), math.nan)
     rows[:, 0] = 10.0

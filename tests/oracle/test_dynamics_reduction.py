@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from hilplant.mechanics.inverse_dynamics import AppliedForce, CrankMotion, inverse_dynamics
 from hilplant.mechanics.motion import Motion, motion, point_motion
 from hilplant.mechanics.reduction import Reduction, reduce
-from hilplant.mechanics.wiper import Side, Wiper, WiperParts, assemble
+from hilplant.mechanics.wiper import Wiper, WiperParts, WiperSide, assemble
 
 Floats = NDArray[np.float64]
 BOUND = 1e-9
@@ -23,7 +23,7 @@ NODES = 256
 PUBLISHED = "rhd_slave_driven"
 
 
-def along_the_path(wiper: Wiper, moving: Motion, side: Side, pin: tuple[str, tuple[float, float]]) -> Floats:
+def along_the_path(wiper: Wiper, moving: Motion, side: WiperSide, pin: tuple[str, tuple[float, float]]) -> Floats:
     """Return the unit vectors across the way from the pivot, anticlockwise: the sense of a rising rocker angle."""
     spoke = wiper.mechanism.point(moving.coordinates, pin) - wiper.mechanism.point(moving.coordinates, side.pivot)
     across = np.stack([-spoke[:, 1], spoke[:, 0]], axis=-1)

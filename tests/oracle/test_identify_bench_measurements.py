@@ -9,7 +9,7 @@ from uncertainties import ufloat
 
 from hilplant.failure import Failure
 from hilplant.motor_bench.bench_measurements import (
-    Friction,
+    MotorFriction,
     SteadyRun,
     back_emf_constant,
     cylinder_inertia,
@@ -113,8 +113,8 @@ def test_inertia_from_a_run_down_that_another_solver_made() -> None:
     times = np.linspace(0.0, 0.1, 200)
     solved = solve_ivp(lambda _, w: [-(B * w[0] + T) / J], (0.0, 0.1), [260.0], t_eval=times, rtol=1e-9).y[0]
     noisy = solved + 0.5 * np.random.default_rng(2).standard_normal(200)
-    exact = run_down(times, solved, Friction(B, T))
-    found = run_down(times, noisy, Friction(ufloat(B, 0.02 * B), ufloat(T, 0.02 * T)))
+    exact = run_down(times, solved, MotorFriction(B, T))
+    found = run_down(times, noisy, MotorFriction(ufloat(B, 0.02 * B), ufloat(T, 0.02 * T)))
     assert exact.n == pytest.approx(J, rel=1e-4)
     assert abs(found.n - J) < 3.0 * found.s
     assert 0.01 < found.s / J < 0.03  # the friction's two per cent govern
@@ -122,7 +122,7 @@ def test_inertia_from_a_run_down_that_another_solver_made() -> None:
 
 def test_a_run_down_that_does_not_slow_is_refused() -> None:
     with pytest.raises(Failure, match="does not fall"):
-        run_down(np.linspace(0.0, 1.0, 50), np.full(50, 200.0), Friction(B, T))
+        run_down(np.linspace(0.0, 1.0, 50), np.full(50, 200.0), MotorFriction(B, T))
 
 
 def sheet(ohm: float, constant: float, volts: float = 13.5, efficiency: float = 0.6) -> SpeedSheet:

@@ -10,17 +10,17 @@ from hilplant.identify.experiment import simulate_run
 from hilplant.identify.local_search import left_over, search
 from hilplant.identify.parameters import SEVENTEEN, Choice, chosen
 from hilplant.identify.profile import profile
-from hilplant.identify.residuals import Noise, Problem, directions, edge_errors_s, expected_noise
+from hilplant.identify.residuals import LeastSquares, ResidualNoise, directions, edge_errors_s, expected_noise
 from hilplant.identify.run_of_data import make_run
-from hilplant.identify.twin import CLEAN, Condition, Spoiling, chance, played, spoilt, thesis_conditions
+from hilplant.identify.twin import CLEAN, Spoiling, TwinCondition, chance, played, spoilt, thesis_conditions
 from hilplant.identify.uncertainty import spread, verdicts
 from hilplant.thesis.coverage import twin_runs
 
 COUNT, SAMPLES, EDGES = 4, 4000, 40
-ONE = Noise(1.0, 1.0)
+ONE = ResidualNoise(1.0, 1.0)
 
 
-class Straight(Problem):
+class Straight(LeastSquares):
     """Residuals that are linear in the parameters: everything about them is known from the normal equations."""
 
     def __init__(self, design, data, noise=ONE):
@@ -138,10 +138,10 @@ def test_what_two_columns_say_together_is_not_told_apart():
 def wipe():
     """One wipe at 14 V, slow and dry, as the plant makes it."""
     bench = load_bench("default")
-    data = spoilt(played(bench, Condition(False, 0.0, (14.0,))), CLEAN, 0.001, 0)
+    data = spoilt(played(bench, TwinCondition(False, 0.0, (14.0,))), CLEAN, 0.001, 0)
     runs = [make_run(data, bench, 0.0)]
     choice = chosen(bench.parameter_row)
-    return bench, runs, Problem(runs, choice, bench.tables, Noise(0.1, 3e-4), np.abs(choice.values))
+    return bench, runs, LeastSquares(runs, choice, bench.tables, ResidualNoise(0.1, 3e-4), np.abs(choice.values))
 
 
 def test_the_truth_leaves_nothing_but_the_rounding_of_edges(wipe):
@@ -201,5 +201,5 @@ def test_no_two_noises_share_the_rounding_of_their_park_edges(wipe):
 def test_noise_is_seen_from_sample_to_sample(wipe):
     bench, *_ = wipe
     how = Spoiling(0.2, 0.01)
-    runs = twin_runs(bench, [Condition(False, 0.0, (14.0,))], how, 5)
+    runs = twin_runs(bench, [TwinCondition(False, 0.0, (14.0,))], how, 5)
     assert expected_noise(runs).current_a == pytest.approx(0.2, rel=0.1)

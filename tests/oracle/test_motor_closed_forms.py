@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from hilplant.models.armature import Drive, Motion
+from hilplant.models.armature import ArmatureDrive, ArmatureMotion
 from hilplant.models.motor import advance
 from hilplant.models.records import Brush, Motor
 
@@ -20,8 +20,8 @@ def motor_of(name: str) -> Motor:
     return Motor(Brush(**text["slow"]), Brush(**text["fast"]), *(text[key] for key in rest))
 
 
-def drive_of(brush: Brush, motor: Motor, voltage: float, dry_torque: float) -> Drive:
-    return Drive(voltage, *brush, motor.inertia_kg_m2, motor.damping_n_m_s, dry_torque)
+def drive_of(brush: Brush, motor: Motor, voltage: float, dry_torque: float) -> ArmatureDrive:
+    return ArmatureDrive(voltage, *brush, motor.inertia_kg_m2, motor.damping_n_m_s, dry_torque)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -31,7 +31,7 @@ def test_the_motor_settles_at_the_no_load_speed_of_its_equations(name: str) -> N
         r, k, b = brush.resistance_ohm, brush.constant_v_s, motor.damping_n_m_s
         dry = 0.1 * k * 13.5 / r
         drive = drive_of(brush, motor, 13.5, dry)
-        motion = Motion(0.0, 0.0, 0.0)
+        motion = ArmatureMotion(0.0, 0.0, 0.0)
         for _ in range(5000):
             motion = advance(motion, drive, 1e-3)
         assert motion.speed == pytest.approx((13.5 * k - r * dry) / (r * b + k * k), rel=1e-12)
@@ -42,7 +42,7 @@ def test_the_motor_settles_at_the_no_load_speed_of_its_equations(name: str) -> N
 def test_a_blocked_motor_is_a_coil_with_a_resistor(name: str) -> None:
     motor = motor_of(name)
     brush = motor.slow
-    motion = Motion(0.0, 0.0, 0.0)
+    motion = ArmatureMotion(0.0, 0.0, 0.0)
     for tick in range(1, 30):
         motion = advance(motion, drive_of(brush, motor, 13.5, 1e3), 1e-3)
         rise = -math.expm1(-tick * 1e-3 * brush.resistance_ohm / brush.inductance_henry)
@@ -58,8 +58,8 @@ def test_it_breaks_away_at_the_instant_of_the_logarithm() -> None:
     instant = -brush.inductance_henry / brush.resistance_ohm * math.log(1.0 - i_break / i_final)
     assert 0.0 < instant < 1e-3
     drive = drive_of(brush, motor, 13.5, dry)
-    assert advance(Motion(0.0, 0.0, 0.0), drive, instant * (1.0 - 1e-9)).speed == 0.0
-    later = advance(Motion(0.0, 0.0, 0.0), drive, instant + 1e-6)
+    assert advance(ArmatureMotion(0.0, 0.0, 0.0), drive, instant * (1.0 - 1e-9)).speed == 0.0
+    later = advance(ArmatureMotion(0.0, 0.0, 0.0), drive, instant + 1e-6)
     # just after, K di/dt t^2 / (2 J)
     rate = (13.5 - brush.resistance_ohm * i_break) / brush.inductance_henry
     expected = brush.constant_v_s * rate * 1e-12 / (2.0 * motor.inertia_kg_m2)
@@ -68,8 +68,8 @@ def test_it_breaks_away_at_the_instant_of_the_logarithm() -> None:
 
 def test_dry_friction_alone_stops_a_motor_at_the_point_that_its_energy_allows() -> None:
     # hardly any coupling, no damping: J w^2 / 2 = dry torque * angle
-    drive = Drive(0.0, 1.0, 1e-3, 3e-3, 2e-5, 0.0, 0.5)
-    motion = advance(Motion(0.0, 20.0, 0.0), drive, 1e-3)
+    drive = ArmatureDrive(0.0, 1.0, 1e-3, 3e-3, 2e-5, 0.0, 0.5)
+    motion = advance(ArmatureMotion(0.0, 20.0, 0.0), drive, 1e-3)
     assert motion.speed == 0.0
     assert motion.turned == pytest.approx(2e-5 * 400.0 / (2.0 * 0.5), rel=1e-3)
     later = advance(motion, drive, 1e-3)
@@ -78,12 +78,12 @@ def test_dry_friction_alone_stops_a_motor_at_the_point_that_its_energy_allows() 
 
 def test_a_motor_at_rest_without_dry_friction_starts() -> None:
     motor = motor_of("table_5_9")
-    assert advance(Motion(1.0, 0.0, 0.0), drive_of(motor.slow, motor, 0.0, 0.0), 1e-3).speed > 0.0
+    assert advance(ArmatureMotion(1.0, 0.0, 0.0), drive_of(motor.slow, motor, 0.0, 0.0), 1e-3).speed > 0.0
 
 
 def test_the_motor_is_the_same_in_both_directions() -> None:
     motor = motor_of("table_5_9")
     for current, speed in ((0.0, 0.0), (3.0, 1.0), (-10.0, 0.5), (10.0, -0.5), (5.0, -200.0)):
-        there = advance(Motion(current, speed, 0.0), drive_of(motor.slow, motor, 13.5, 0.05), 1e-3)
-        back = advance(Motion(-current, -speed, 0.0), drive_of(motor.slow, motor, -13.5, 0.05), 1e-3)
+        there = advance(ArmatureMotion(current, speed, 0.0), drive_of(motor.slow, motor, 13.5, 0.05), 1e-3)
+        back = advance(ArmatureMotion(-current, -speed, 0.0), drive_of(motor.slow, motor, -13.5, 0.05), 1e-3)
         assert (back.current, back.speed, back.turned) == (-there.current, -there.speed, -there.turned)

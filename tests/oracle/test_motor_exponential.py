@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from hilplant.models.armature import Drive, Motion, glide, propagator
+from hilplant.models.armature import ArmatureDrive, ArmatureMotion, glide, propagator
 
 
 def powers_of_ten(low: float, high: float) -> st.SearchStrategy[float]:
@@ -16,7 +16,7 @@ def powers_of_ten(low: float, high: float) -> st.SearchStrategy[float]:
 
 
 MOTORS = st.builds(
-    Drive,
+    ArmatureDrive,
     voltage=st.floats(-40.0, 40.0),
     resistance=powers_of_ten(-1, 1.5),
     inductance=powers_of_ten(-5, -1.5),
@@ -27,7 +27,7 @@ MOTORS = st.builds(
 )
 
 
-def scaled_error(drive: Drive, time: float) -> float:
+def scaled_error(drive: ArmatureDrive, time: float) -> float:
     """Compare in coordinates sqrt(L) i, sqrt(J) w, in which exp(A t) never exceeds 1 and scipy's is well scaled."""
     coupling = drive.constant / math.sqrt(drive.inductance * drive.inertia)
     a = np.array([[-drive.resistance / drive.inductance, -coupling], [coupling, -drive.damping / drive.inertia]])
@@ -38,7 +38,7 @@ def scaled_error(drive: Drive, time: float) -> float:
 
 @settings(max_examples=200, deadline=None)
 @given(drive=MOTORS, time=powers_of_ten(-7, -2))
-def test_the_closed_form_is_scipys_exponential(drive: Drive, time: float) -> None:
+def test_the_closed_form_is_scipys_exponential(drive: ArmatureDrive, time: float) -> None:
     rates = drive.resistance / drive.inductance + drive.damping / drive.inertia
     rates += drive.constant / math.sqrt(drive.inductance * drive.inertia)
     # scipy gets there by squaring, and its rounding grows with the norm
@@ -48,12 +48,12 @@ def test_the_closed_form_is_scipys_exponential(drive: Drive, time: float) -> Non
 @pytest.mark.parametrize("nudge", [0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-8, -1e-8, 1e-4, -1e-4])
 def test_nothing_is_lost_where_the_eigenvalues_come_together(nudge: float) -> None:
     # half the difference of the diagonal, 200 1/s, equals the coupling, 200 1/s
-    drive = Drive(0.0, 0.4, 1e-3, 200.0 * math.sqrt(1e-8) * (1.0 + nudge), 1e-5, 0.0, 0.0)
+    drive = ArmatureDrive(0.0, 0.4, 1e-3, 200.0 * math.sqrt(1e-8) * (1.0 + nudge), 1e-5, 0.0, 0.0)
     assert scaled_error(drive, 1e-3) < 1e-14
 
 
 def test_the_stiffest_motors_neither_overflow_nor_lose_their_slow_part() -> None:
-    drive = Drive(0.0, 1.0, 1e-2, 1e-3, 1e-9, 1.0, 0.0)
+    drive = ArmatureDrive(0.0, 1.0, 1e-2, 1e-3, 1e-9, 1.0, 0.0)
     e11, e12, e21, e22 = propagator(drive, 1e-3)
     assert all(math.isfinite(element) for element in (e11, e12, e21, e22))
     assert math.isclose(e11, math.exp(-100.0 * 1e-3), rel_tol=1e-6)
@@ -63,14 +63,14 @@ def test_the_stiffest_motors_neither_overflow_nor_lose_their_slow_part() -> None
 @settings(max_examples=100, deadline=None)
 @given(drive=MOTORS, current=st.floats(-50, 50), speed=st.floats(-400, 400), torque=st.floats(-1, 1))
 def test_the_turned_angle_is_the_integral_of_the_speed(
-    drive: Drive, current: float, speed: float, torque: float
+    drive: ArmatureDrive, current: float, speed: float, torque: float
 ) -> None:
     # Gauss-Legendre quadrature of the speed over a time in which nothing happens fast
     rates = drive.resistance / drive.inductance + drive.damping / drive.inertia
     rates += drive.constant / math.sqrt(drive.inductance * drive.inertia)
     time = 1.0 / rates
     nodes, weights = np.polynomial.legendre.leggauss(12)
-    start = Motion(current, speed, 0.0)
+    start = ArmatureMotion(current, speed, 0.0)
     speeds = [glide(start, drive, torque, 0.5 * time * (node + 1.0)).speed for node in nodes]
     # the angle comes from differences of the speed, times the mechanical time constant
     strength = drive.resistance * drive.damping + drive.constant**2

@@ -14,7 +14,7 @@ from hilplant.models.narx import FAST_BRUSH, SLOW_BRUSH, Sample, path_of, predic
 from hilplant.progress import ProgressReport
 from hilplant.resources import shipped
 from hilplant.train.motor_data import excitation, mean_torque, physical, recorded
-from hilplant.train.motor_fit import ENDLESS, Fit, Scaling, first_weights, train_path
+from hilplant.train.motor_fit import ENDLESS, MotorFit, MotorScaling, first_weights, train_path
 from hilplant.train.motor_loop import room_for, run
 from hilplant.train.torque import one_thread
 
@@ -111,12 +111,12 @@ def test_derivatives_through_the_feedback_are_those_of_finite_differences(horizo
 
 def test_the_torque_that_is_learnt_from_is_the_one_that_was_applied(bench) -> None:
     """A motor alone with a constant brake: what the balance over each tick leaves is that brake."""
-    from hilplant.models.armature import Drive, Motion, glide
+    from hilplant.models.armature import ArmatureDrive, ArmatureMotion, glide
 
     parameters = physical(bench.parameters)
     motor, brush, torque = parameters.motor, parameters.motor.slow, 7.0
-    drive = Drive(12.0, *brush, motor.inertia_kg_m2, motor.damping_n_m_s, 0.0)
-    motion, rows = Motion(1.0, 80.0, 0.0), []
+    drive = ArmatureDrive(12.0, *brush, motor.inertia_kg_m2, motor.damping_n_m_s, 0.0)
+    motion, rows = ArmatureMotion(1.0, 80.0, 0.0), []
     for _ in range(50):
         rows.append(motion)
         motion = glide(motion, drive, torque / motor.gear_ratio, 1e-3)
@@ -131,7 +131,7 @@ def test_training_splits_by_time_and_reaches_all_there_is_to_learn(bench) -> Non
     training, validation, test = (np.flatnonzero(part) for part in sequence.parts())
     assert training[-1] < 11_200 <= validation[0] + 1
     assert validation[-1] < 13_600 <= test[0] + 1
-    ranges = Scaling.of(sequence).ranges
+    ranges = MotorScaling.of(sequence).ranges
     assert ranges[0, 0] == 0.0
     assert ranges[0, 1] > 18.2
     assert ranges[2, 0] < -5.0 < 10.0 < ranges[2, 1]
@@ -152,7 +152,7 @@ def test_a_short_training_repeats_to_the_last_bit_and_an_interrupt_keeps_the_bes
     assert runs[0].interrupted
     assert runs[0].epochs == (6, 0)
     assert told[:6] == told[6:]
-    fit = Fit(sequence, runs[0].scaling, 1)
+    fit = MotorFit(sequence, runs[0].scaling, 1)
     assert fit.judged(runs[0].weights) < 0.5 * told[0], "the best so far, not the first"
     assert math.isfinite(fit.cost(runs[0].weights))
 

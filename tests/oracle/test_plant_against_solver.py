@@ -16,7 +16,7 @@ from hilplant.models.plant import tick
 from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State
 from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
-from hilplant.thesis.solver import Errors, Rows, compare
+from hilplant.thesis.solver import Rows, SolverErrors, compare
 
 MOTORS = Path(__file__).parents[2] / "config" / "motors"
 LIMIT_PERCENT = 0.5
@@ -51,7 +51,7 @@ def tables() -> Floats:
     return np.zeros((9, 9, 2))
 
 
-def errors_of(plant: Parameters, inputs: Floats) -> Errors:
+def errors_of(plant: Parameters, inputs: Floats) -> SolverErrors:
     return compare(plant, tables(), lambda _: tables()[0], inputs)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from hilplant.train.levenberg_marquardt import Settings, minimise
+from hilplant.train.levenberg_marquardt import DescentSettings, minimise
 from hilplant.train.tanh_network import NetworkFit, Samples, TanhNetwork
 
 NETWORK = TanhNetwork(3, 4, 2)
@@ -61,7 +61,7 @@ class Line:
 @pytest.mark.parametrize("decay", [0.0, 3.0])
 def test_a_linear_problem_ends_in_its_closed_form(decay: float) -> None:
     line = Line()
-    found = minimise(line, np.full(3, 5.0), Settings(decay=decay, tolerance=0.0, patience=400))
+    found = minimise(line, np.full(3, 5.0), DescentSettings(decay=decay, tolerance=0.0, patience=400))
     ridge = np.linalg.solve(line.matrix.T @ line.matrix + decay * np.eye(3), line.matrix.T @ line.wanted)
     if decay == 0.0:
         assert found.weights == pytest.approx(ridge, rel=1e-7)
@@ -78,7 +78,7 @@ def test_a_decay_that_falls_first_bends_little_and_ends_where_the_fit_without_it
             sizes.append(float(np.linalg.norm(weights)))
             return super().judged(weights)
 
-    settings = Settings(decay=0.0, first_decay=1e4, decay_falls=0.9, tolerance=0.0, patience=400)
+    settings = DescentSettings(decay=0.0, first_decay=1e4, decay_falls=0.9, tolerance=0.0, patience=400)
     found = minimise(Watched(), np.full(3, 5.0), settings)
     least = np.linalg.lstsq(line.matrix, line.wanted, rcond=None)[0]
     assert found.weights == pytest.approx(least, rel=1e-5)
@@ -92,7 +92,8 @@ def test_a_network_finds_another_one_of_its_size() -> None:
     samples = Samples(inputs, NETWORK.answer(teacher, inputs))
     fit = NetworkFit(NETWORK, samples.taken(np.arange(300)), samples.taken(np.arange(300, 400)))
     best = min(
-        minimise(fit, NETWORK.start(random), Settings(decay=0.0, epochs=600, tolerance=0.0)).judged for _ in range(6)
+        minimise(fit, NETWORK.start(random), DescentSettings(decay=0.0, epochs=600, tolerance=0.0)).judged
+        for _ in range(6)
     )
     assert best < 1e-8
 
@@ -100,7 +101,7 @@ def test_a_network_finds_another_one_of_its_size() -> None:
 def test_training_stops_when_the_judged_error_has_risen_for_long() -> None:
     fit, weights = problem(5)
     seen: list[float] = []
-    settings = Settings(decay=0.0, patience=7, tolerance=0.0)
+    settings = DescentSettings(decay=0.0, patience=7, tolerance=0.0)
     found = minimise(fit, weights, settings, lambda epoch, judged: seen.append(judged))
     best = int(np.argmin(seen))
     assert len(seen) == best + 1 + 7 == found.epochs
@@ -116,6 +117,6 @@ def test_an_interrupt_keeps_the_best_so_far() -> None:
         if epoch == 4:
             raise KeyboardInterrupt
 
-    found = minimise(fit, weights, Settings(), interrupting)
+    found = minimise(fit, weights, DescentSettings(), interrupting)
     assert found.interrupted and len(seen) == 4
     assert found.judged == min([fit.judged(weights), *seen]) == fit.judged(found.weights)

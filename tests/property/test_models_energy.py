@@ -5,7 +5,7 @@ import math
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from hilplant.models.armature import Drive, Motion
+from hilplant.models.armature import ArmatureDrive, ArmatureMotion
 from hilplant.models.motor import STRETCHES, advance, half_period
 
 
@@ -15,7 +15,7 @@ def powers_of_ten(low: float, high: float) -> st.SearchStrategy[float]:
 
 STEP_S = 1e-3
 MOTORS = st.builds(
-    Drive,
+    ArmatureDrive,
     voltage=st.floats(-20.0, 20.0),
     resistance=powers_of_ten(-1, 1),
     inductance=powers_of_ten(-5, -2),
@@ -28,14 +28,16 @@ CURRENTS = st.just(0.0) | st.floats(-30.0, 30.0)
 SPEEDS = st.just(0.0) | st.floats(-400.0, 400.0) | st.floats(-1.0, 1.0)
 
 
-def stored(motion: Motion, drive: Drive) -> float:
+def stored(motion: ArmatureMotion, drive: ArmatureDrive) -> float:
     return 0.5 * drive.inductance * motion.current**2 + 0.5 * drive.inertia * motion.speed**2
 
 
 @settings(max_examples=500, deadline=None)
 @given(drive=MOTORS, current=CURRENTS, speed=SPEEDS)
-def test_no_step_gains_more_energy_than_the_terminals_put_in(drive: Drive, current: float, speed: float) -> None:
-    start = Motion(current, speed, 0.0)
+def test_no_step_gains_more_energy_than_the_terminals_put_in(
+    drive: ArmatureDrive, current: float, speed: float
+) -> None:
+    start = ArmatureMotion(current, speed, 0.0)
     end = advance(start, drive, STEP_S)
     assert math.isfinite(end.current + end.speed + end.turned)
     # the charge follows from the time integral of (3.30); the losses are at least those of a steady flow
@@ -55,17 +57,17 @@ def test_no_step_gains_more_energy_than_the_terminals_put_in(drive: Drive, curre
 
 @settings(max_examples=300, deadline=None)
 @given(drive=MOTORS, current=CURRENTS)
-def test_a_shaft_at_rest_stays_while_the_motor_is_too_weak(drive: Drive, current: float) -> None:
+def test_a_shaft_at_rest_stays_while_the_motor_is_too_weak(drive: ArmatureDrive, current: float) -> None:
     strongest = drive.constant * max(abs(current), abs(drive.voltage) / drive.resistance)
-    end = advance(Motion(current, 0.0, 0.0), drive._replace(dry_torque=strongest * 1.001 + 1e-9), STEP_S)
+    end = advance(ArmatureMotion(current, 0.0, 0.0), drive._replace(dry_torque=strongest * 1.001 + 1e-9), STEP_S)
     assert (end.speed, end.turned) == (0.0, 0.0)
 
 
 @settings(max_examples=300, deadline=None)
 @given(drive=MOTORS, current=CURRENTS, speed=SPEEDS)
-def test_one_step_is_the_same_as_two_halves(drive: Drive, current: float, speed: float) -> None:
+def test_one_step_is_the_same_as_two_halves(drive: ArmatureDrive, current: float, speed: float) -> None:
     assume(STEP_S / half_period(drive) < STRETCHES / 3)  # beyond, `advance` says, the cap may end the motion
-    start = Motion(current, speed, 0.0)
+    start = ArmatureMotion(current, speed, 0.0)
     whole = advance(start, drive, STEP_S)
     halves = advance(advance(start, drive, 0.5 * STEP_S), drive, 0.5 * STEP_S)
     # in units of energy: current and speed are compared as sqrt(L) i and sqrt(J) w

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.closed_form import ClosedFormWiper
 
-from hilplant.models.armature import Motion
+from hilplant.models.armature import ArmatureMotion
 from hilplant.models.circuit import Connection
 from hilplant.models.load import resist
 from hilplant.models.lookup import find
@@ -36,13 +36,13 @@ def train_of(motor: Motor, load: Load, inputs: Inputs, connection: Connection, s
     return Train(connection, TABLES, inputs, parameters, 0.0, NO_TANGENT)
 
 
-def turned(motion: Motion, angle: float, train: Train) -> Motion:
+def turned(motion: ArmatureMotion, angle: float, train: Train) -> ArmatureMotion:
     crank = Crank(TABLES, find(TABLES, angle), angle, motion.speed / RATIO)
     load = resist(crank, train.parameters, train.inputs)
     return turn(motion, angle, load, train)
 
 
-def energy(angle: float, motion: Motion, motor: Motor) -> float:
+def energy(angle: float, motion: ArmatureMotion, motor: Motor) -> float:
     stored = 0.5 * motor.inertia_kg_m2 * motion.speed**2 + 0.5 * SLOW.inductance_henry * motion.current**2
     return stored + WIPER.energy(angle, motion.speed / RATIO)
 
@@ -52,9 +52,13 @@ def energy(angle: float, motion: Motion, motor: Motor) -> float:
 def test_without_friction_an_ideal_gear_keeps_the_energy(angle: float, speed: float, way: float) -> None:
     motor = Motor(SLOW, FAST, 1.983e-5, 0.0, 0.0, RATIO, 1.0, 1.0)
     train = train_of(motor, Load(2.0), FREE, OPEN)
-    motion, place, before = Motion(0.0, way * speed, 0.0), angle, energy(angle, Motion(0.0, speed, 0.0), motor)
+    motion, place, before = (
+        ArmatureMotion(0.0, way * speed, 0.0),
+        angle,
+        energy(angle, ArmatureMotion(0.0, speed, 0.0), motor),
+    )
     for _ in range(100):
-        motion = turned(Motion(0.0, motion.speed, 0.0), place % (2.0 * math.pi), train)
+        motion = turned(ArmatureMotion(0.0, motion.speed, 0.0), place % (2.0 * math.pi), train)
         place += motion.turned / RATIO
     assert abs(energy(place, motion, motor) - before) < 1e-5 * (before + 2.0 * LARGEST_POTENTIAL)
 
@@ -75,7 +79,7 @@ def test_no_step_gains_more_energy_than_the_terminals_put_in(
     load = Load(2.0, friction=FRICTION, left_blade=Blade(7.615), right_blade=Blade(7.615))
     connection = Connection(SLOW, volts, 1.0, volts, 0.0, 0.0, 0.0)
     train = train_of(motor, load, FREE._replace(screen=screen, brake_torque_n_m=brake), connection)
-    start = Motion(current, speed, 0.0)
+    start = ArmatureMotion(current, speed, 0.0)
     end = turned(start, angle, train)
     # the motor alone, which a self-locking worm must not drive; then motor and wiper together
     own_start = 0.5 * motor.inertia_kg_m2 * speed**2 + 0.5 * SLOW.inductance_henry * current**2
@@ -97,9 +101,9 @@ def test_an_open_armature_has_no_current_and_coasts_to_rest(angle: float, speed:
     motor = Motor(SLOW, FAST, 1.983e-5, 1.582e-4, 0.02, RATIO)
     load = Load(2.0, friction=FRICTION, left_blade=Blade(7.615), right_blade=Blade(7.615))
     train, place = train_of(motor, load, FREE, OPEN), angle
-    motion = Motion(0.0, speed, 0.0)
+    motion = ArmatureMotion(0.0, speed, 0.0)
     for _ in range(600):
-        after = turned(Motion(0.0, motion.speed, 0.0), place % (2.0 * math.pi), train)
+        after = turned(ArmatureMotion(0.0, motion.speed, 0.0), place % (2.0 * math.pi), train)
         assert after.current == 0.0
         assert abs(after.speed) <= abs(motion.speed)
         place, motion = place + after.turned / RATIO, after

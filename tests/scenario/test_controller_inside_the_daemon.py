@@ -10,9 +10,9 @@ from typer.testing import CliRunner
 from hilplant.bench import load_bench
 from hilplant.bus.frame import Frame
 from hilplant.bus.transport import SendResult
-from hilplant.cli.actions.run import Inside, seated
 from hilplant.cli.main import app
 from hilplant.control.reference import parse_reference
+from hilplant.ecu.loop_controller import Inside, seated
 from hilplant.failure import Failure
 from hilplant.recording.replay import replay
 from hilplant.runtime.clock import VirtualClock

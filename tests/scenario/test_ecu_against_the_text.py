@@ -8,11 +8,11 @@ import random
 
 import pytest
 
-from hilplant.ecu.relay_controller import State, advance
-from hilplant.ecu.vocabulary import Fault, Inputs, Master, Settings, Stalk
+from hilplant.ecu.relay_controller import ControllerState, advance
+from hilplant.ecu.vocabulary import EcuInputs, Fault, Master, RelaySettings, Stalk
 
 LOOKS, LOOK_S = 100_000, 0.005
-SETTINGS = Settings(pauses_s=(0.2, 0.35, 0.5, 0.65, 0.8, 0.95))
+SETTINGS = RelaySettings(pauses_s=(0.2, 0.35, 0.5, 0.65, 0.8, 0.95))
 #: Turns a second of the wiper by its relays, and half the park window in turns.
 TURNS_PER_S, HALF_WINDOW = {(False, False): 0.0, (True, False): 0.6, (True, True): 1.0}, 0.02
 WAITS = ("wait", "int_wait", "slow_wait", "fast_wait")
@@ -90,7 +90,7 @@ def moved(chance: random.Random, stalk: Stalk) -> Stalk:
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_the_controller_does_what_the_text_says_at_every_look(seed):
-    chance, state, text, stalk, left = random.Random(seed), State(), Text(), Stalk(), 0
+    chance, state, text, stalk, left = random.Random(seed), ControllerState(), Text(), Stalk(), 0
     turns, opened_s, seen, switched = 0.0, None, set(), 0
     for number in range(LOOKS):
         now_s = number * LOOK_S
@@ -102,7 +102,7 @@ def test_the_controller_does_what_the_text_says_at_every_look(seed):
         closed = abs((turns + 0.5) % 1.0 - 0.5) < HALF_WINDOW
         park = closed and opened_s is not None and now_s - LOOK_S - opened_s >= SETTINGS.debounce_s
         opened_s = None if closed else now_s if opened_s is None else opened_s
-        state, relays, fault = advance(state, Inputs(stalk, closed, 2.0, 13.5), now_s, SETTINGS)
+        state, relays, fault = advance(state, EcuInputs(stalk, closed, 2.0, 13.5), now_s, SETTINGS)
         expected = text.look(stalk, park, now_s)
         assert tuple(relays) == expected, f"look {number}, {stalk}: {state.phase}, by the text {text.at}"
         assert fault is Fault.NONE

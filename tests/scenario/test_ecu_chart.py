@@ -8,15 +8,15 @@ from collections.abc import Callable
 import pytest
 
 from hilplant.ecu.chart import CHART, EXITS, Phase
-from hilplant.ecu.relay_controller import State, advance, take
+from hilplant.ecu.relay_controller import ControllerState, advance, take
 from hilplant.ecu.stalk import move_named, moved
-from hilplant.ecu.vocabulary import RELAYS_OFF, Fault, Inputs, Relays, Settings, Stalk
+from hilplant.ecu.vocabulary import RELAYS_OFF, EcuInputs, Fault, RelayCommand, RelaySettings, Stalk
 
 POLL_S = 0.005
-SETTINGS = Settings(
+SETTINGS = RelaySettings(
     pauses_s=(0.2, 0.3, 0.4, 0.5, 0.6, 0.7), turn_timeout_s=3.0, leave_timeout_s=1.0, retry_pause_s=0.5, tries=3
 )
-SLOW, FAST = Relays(on=True, fast=False), Relays(on=True, fast=True)
+SLOW, FAST = RelayCommand(on=True, fast=False), RelayCommand(on=True, fast=True)
 CONTACTS = {"closed": True, "open": False, "unknown": None}
 
 #: How to come into each phase: `contact stalk seconds [stall|low]`, line by line; {c} is the contact while wiping.
@@ -55,7 +55,7 @@ class Seat:
     """Plays inputs to a controller and notes what it does."""
 
     def __init__(self) -> None:
-        self.state, self.relays, self.fault, self.now_s = State(), RELAYS_OFF, Fault.NONE, 0.0
+        self.state, self.relays, self.fault, self.now_s = ControllerState(), RELAYS_OFF, Fault.NONE, 0.0
         self.taken: list[tuple[Phase, int]] = []
 
     def play(self, story: str, until: Callable[[], bool] = lambda: False) -> None:
@@ -68,9 +68,9 @@ class Seat:
                     return
                 closed = number % 2 == 0 if contact == "bounces" else CONTACTS[contact]
                 current_a, supply_v = 11.0 if "stall" in extra else 2.0, 5.0 if "low" in extra else 13.5
-                self.look(Inputs(stalk_of(stalk), closed, current_a, supply_v))
+                self.look(EcuInputs(stalk_of(stalk), closed, current_a, supply_v))
 
-    def look(self, inputs: Inputs) -> None:
+    def look(self, inputs: EcuInputs) -> None:
         self.now_s += POLL_S
         _, row = take(self.state, inputs, self.now_s, SETTINGS)
         if row is not None:

@@ -12,15 +12,15 @@ from support.ecu_closed_loop import ClosedLoop
 
 from hilplant.bench import load_bench
 from hilplant.ecu.chart import PAUSES, RESTING, Phase
-from hilplant.ecu.relay_controller import State, advance
-from hilplant.ecu.vocabulary import Fault, Inputs, Master, Settings, Stalk
+from hilplant.ecu.relay_controller import ControllerState, advance
+from hilplant.ecu.vocabulary import EcuInputs, Fault, Master, RelaySettings, Stalk
 from hilplant.signals import INPUT_INDEX
 
 LOOKS = 100_000
 OFF, FLICK = Stalk(), Stalk(flick=True)
 BRAKE, SUPPLY = INPUT_INDEX["brake_torque_n_m"], INPUT_INDEX["supply_v"]
 #: Short times, so that much happens: everything else is as shipped.
-SETTINGS = Settings(pauses_s=(0.2, 0.4, 0.6, 0.8, 1.0, 1.2), retry_pause_s=0.5, turn_timeout_s=4.0)
+SETTINGS = RelaySettings(pauses_s=(0.2, 0.4, 0.6, 0.8, 1.0, 1.2), retry_pause_s=0.5, turn_timeout_s=4.0)
 #: From relays off to rest, and from there to the debounced word of the contact.
 COASTING_S = 0.15
 
@@ -96,7 +96,7 @@ def test_no_mishap_leaves_relays_on_without_a_way_to_park_or_a_wiper_off_park_un
 
 def test_no_sequence_of_inputs_however_absurd_drives_for_ever_or_is_left_for_good():
     """The controller alone with contacts and currents that no wiper could make."""
-    chance, state, on_s, phases = random.Random(4), State(), 0.0, set()
+    chance, state, on_s, phases = random.Random(4), ControllerState(), 0.0, set()
     stalk, contact, current_a, supply_v = OFF, True, 1.0, 13.5
     for look in range(LOOKS):
         if chance.random() < (0.02, 0.003)[look // 500 % 2]:
@@ -106,7 +106,7 @@ def test_no_sequence_of_inputs_however_absurd_drives_for_ever_or_is_left_for_goo
         if chance.random() < 0.01:
             current_a = chance.choice([1.0, 1.0, 11.0, math.nan])
             supply_v = chance.choice([13.5, 13.5, 5.0, math.nan])
-        inputs = Inputs(stalk, contact, current_a, supply_v)
+        inputs = EcuInputs(stalk, contact, current_a, supply_v)
         state, relays, fault = advance(state, inputs, look * 0.005, SETTINGS)
         phases.add(state.phase)
         on_s = on_s + 0.005 if relays.on and not state.senses.arrived else 0.0

@@ -14,13 +14,13 @@ from hilplant.bench import check_bench, load_bench
 from hilplant.identify.cost import cost_of
 from hilplant.identify.executor import evaluator, here, on_cluster
 from hilplant.identify.experiment import simulate_run
-from hilplant.identify.genetic import Outcome, Settings
+from hilplant.identify.genetic import Outcome, SearchSettings
 from hilplant.identify.local_search import search
 from hilplant.identify.parameters import chosen, search_space
-from hilplant.identify.residuals import Problem, expected_noise
+from hilplant.identify.residuals import LeastSquares, expected_noise
 from hilplant.identify.run_of_data import make_run
 from hilplant.identify.three_stages import EXPLAINED, Task, identify, refined
-from hilplant.identify.twin import CLEAN, Condition, Spoiling, played, spoilt, thesis_conditions, write_csv
+from hilplant.identify.twin import CLEAN, Spoiling, TwinCondition, played, spoilt, thesis_conditions, write_csv
 from hilplant.identify.uncertainty import spread, verdicts
 from hilplant.identify.validation import compare
 from hilplant.thesis.coverage import off_start, twin_runs
@@ -43,7 +43,7 @@ def last_stage(bench, how, seed=1):
     runs = twin_runs(bench, thesis_conditions(VOLTS), how, seed)
     choice = chosen(bench.parameter_row)
     start = off_start(choice, seed, 0.2)
-    solution = search(Problem(runs, choice, bench.tables, expected_noise(runs), np.abs(start)), start)
+    solution = search(LeastSquares(runs, choice, bench.tables, expected_noise(runs), np.abs(start)), start)
     return solution, verdicts(solution, spread(solution))
 
 
@@ -80,7 +80,7 @@ def test_three_stages_from_the_published_start_predict_held_out_data(bench):
     held_out = twin_runs(bench, thesis_conditions((13.0,)), Spoiling(), 4)
     choice = chosen(bench.parameter_row)
     about = published_start(choice)
-    found = identify(Task(bench, runs, choice, about, held_out, Settings(generations=15), seed=2))
+    found = identify(Task(bench, runs, choice, about, held_out, SearchSettings(generations=15), seed=2))
     assert all(each.error.rms_current_a < 1.2 * 0.1 for each in found.held_out)
     values = dict(zip(choice.names, found.solution.values, strict=True))
     truth = dict(zip(choice.names, choice.values, strict=True))
@@ -102,7 +102,7 @@ def test_a_search_that_ended_without_wet_friction_is_begun_again(bench):
     ended = published_start(choice)
     for name, value in (("mu_wet_4", 0.3), ("mu_wet_7", -0.08), ("damping_n_m_s", 1e-4)):
         ended[choice.names.index(name)] = value
-    problem = Problem(runs, choice, bench.tables, expected_noise(runs), np.abs(ended))
+    problem = LeastSquares(runs, choice, bench.tables, expected_noise(runs), np.abs(ended))
     assert search(problem, ended).noise.current_a > EXPLAINED * 0.1
     solution = refined(Task(bench, runs, choice, published_start(choice)), Outcome(ended, 1.0, ()))
     assert solution.noise.current_a == pytest.approx(0.1, rel=0.05)
@@ -113,7 +113,7 @@ def test_a_known_force_tells_more(bench):
     runs = twin_runs(bench, thesis_conditions(VOLTS), Spoiling(), 1)
     choice = chosen(bench.parameter_row, held=["force_n", "mu_dry_1", "mu_dry_2"])
     start = off_start(choice, 1, 0.2)
-    solution = search(Problem(runs, choice, bench.tables, expected_noise(runs), np.abs(start)), start)
+    solution = search(LeastSquares(runs, choice, bench.tables, expected_noise(runs), np.abs(start)), start)
     said = {each.name: each for each in verdicts(solution, spread(solution))}
     assert said["mu_dry_3"].told
     assert said["mu_dry_3"].value == pytest.approx(1.996, rel=0.01)
@@ -121,7 +121,7 @@ def test_a_known_force_tells_more(bench):
 
 def test_a_recording_that_begins_in_motion_is_used_from_its_first_park_edge(bench):
     """Its speed there is looked for; the current that follows is the measured one."""
-    clean = played(bench, Condition(True, 0.0, (13.0,), turns=3))
+    clean = played(bench, TwinCondition(True, 0.0, (13.0,), turns=3))
     data = spoilt(clean, CLEAN, 0.001, 0)
     cut = 900
     moving = replace(
@@ -136,7 +136,7 @@ def test_a_recording_that_begins_in_motion_is_used_from_its_first_park_edge(benc
 
 def test_errors_of_park_edges_are_times(bench):
     """Against the instants at which the model passes the closing angle; each edge was moved by 4 ms, either way."""
-    data = spoilt(played(bench, Condition(False, 0.0, (14.0,), turns=4)), CLEAN, 0.001, 0)
+    data = spoilt(played(bench, TwinCondition(False, 0.0, (14.0,), turns=4)), CLEAN, 0.001, 0)
     run = make_run(data, bench, 0.0)
     run = replace(run, edges=run.edges + np.array([4, -4, 4, -4]))
     (found,) = compare([run], bench.parameter_row, bench.tables)
@@ -149,7 +149,7 @@ def test_errors_of_park_edges_are_times(bench):
 
 def test_a_spike_of_the_voltmeter_does_not_drive_the_model(bench):
     """The motor did not see it: the model's current stays as it is without the spike."""
-    data = spoilt(played(bench, Condition(False, 0.0, (14.0,))), CLEAN, 0.001, 0)
+    data = spoilt(played(bench, TwinCondition(False, 0.0, (14.0,))), CLEAN, 0.001, 0)
     spiky = data.voltage_v.copy()
     spiky[900] += 60.0
     rows, starts = bench.parameter_row[np.newaxis], np.zeros(1)
@@ -162,7 +162,7 @@ def test_a_spike_of_the_voltmeter_does_not_drive_the_model(bench):
 
 def test_a_dask_cluster_of_two_workers_gives_the_same_bits(bench):
     distributed = pytest.importorskip("distributed")
-    runs = twin_runs(bench, [Condition(True, 1.0, (16.0,))], Spoiling(), 1)
+    runs = twin_runs(bench, [TwinCondition(True, 1.0, (16.0,))], Spoiling(), 1)
     choice = chosen(bench.parameter_row)
     cost = cost_of(runs, choice, bench.tables)
     low, high = search_space(choice, choice.values)

@@ -81,9 +81,9 @@ def deaf_to_silence(patch: pytest.MonkeyPatch, bench: Bench) -> Bench:
 
 
 def ignores_crc(patch: pytest.MonkeyPatch, bench: Bench) -> Bench:
-    from hilplant.bus.protection import Checker, Verdict
+    from hilplant.bus.protection import Checker, FrameCheck
 
-    patch.setattr(Checker, "check", lambda self, data: Verdict.OK)
+    patch.setattr(Checker, "check", lambda self, data: FrameCheck.OK)
     return bench
 
 

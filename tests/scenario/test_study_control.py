@@ -24,7 +24,7 @@ from hilplant.thesis.control_network import train, training_record
 from hilplant.thesis.control_rain import LEAST_PER_MINUTE, MOST_PER_MINUTE, rain, two_speed_duty
 from hilplant.thesis.control_search import cost, search, source_gains
 from hilplant.thesis.control_study import Study, run_study, study_bench
-from hilplant.thesis.control_test import Metrics, Run, metrics, run_drive, thesis_drive
+from hilplant.thesis.control_test import DriveRun, Metrics, metrics, run_drive, thesis_drive
 from hilplant.thesis.control_thesis import ROWS, compare_order, factors, far_off
 
 PICTURES = {
@@ -189,7 +189,7 @@ def test_overshoot_is_what_the_first_turn_has_and_the_ripple_has_not():
     speed[0] = 0.0
     outputs = np.zeros((time_s.size, 23))
     outputs[:, 4], outputs[:, 5] = speed, angle
-    found = metrics(Run(time_s, np.full_like(time_s, np.pi), outputs, np.zeros((time_s.size, 5))))
+    found = metrics(DriveRun(time_s, np.full_like(time_s, np.pi), outputs, np.zeros((time_s.size, 5))))
     assert found.overshoot_rad_s == pytest.approx(0.5, abs=0.01)
     assert found.rise_s == pytest.approx(0.001)
     assert found.low == pytest.approx([0.2] * 5, abs=0.01)

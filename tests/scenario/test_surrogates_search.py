@@ -5,10 +5,10 @@ from dataclasses import replace
 from hilplant.bench import load_bench
 from hilplant.bench.load_files import TorqueFile
 from hilplant.models.row import pack
-from hilplant.train.torque_search import Found, Range, search
+from hilplant.train.torque_search import Range, TorqueDifferences, search
 
 
-def searched(scenarios: int, spoilt: float = 0.0) -> Found:
+def searched(scenarios: int, spoilt: float = 0.0) -> TorqueDifferences:
     bench = load_bench("network")
     file = bench.plant.load_file
     assert isinstance(file, TorqueFile)

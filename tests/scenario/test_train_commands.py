@@ -11,8 +11,8 @@ from hilplant.bench import check_bench, load_bench
 from hilplant.cli.main import app
 from hilplant.progress import ProgressReport
 from hilplant.train import torque
-from hilplant.train.levenberg_marquardt import Settings
-from hilplant.train.torque import Plan, data_of, train
+from hilplant.train.levenberg_marquardt import DescentSettings
+from hilplant.train.torque import TrainingPlan, data_of, train
 from hilplant.train.torque_data import Speeds
 from hilplant.train.torque_study import study
 
@@ -70,7 +70,7 @@ def test_wrong_use_is_told_in_one_line(arguments: tuple[str, ...], text: str, tm
 
 
 def test_an_interrupt_keeps_the_best_start_so_far() -> None:
-    plan = Plan(neurons=3, harmonics=1, starts=5, points=40, settings=Settings(epochs=15))
+    plan = TrainingPlan(neurons=3, harmonics=1, starts=5, points=40, settings=DescentSettings(epochs=15))
     data = data_of(load_bench("default"), plan)
     whole = [torque.train_once(data, plan, start) for start in range(2)]
 
@@ -83,7 +83,7 @@ def test_an_interrupt_keeps_the_best_start_so_far() -> None:
 
 
 def test_the_sets_are_split_as_the_source_does_and_never_meet() -> None:
-    plan = Plan(neurons=2, points=100, speeds=Speeds((1.0, 2.0, 4.0)))
+    plan = TrainingPlan(neurons=2, points=100, speeds=Speeds((1.0, 2.0, 4.0)))
     assert plan.speeds.validation == (1.5, 3.0) and plan.speeds.judging == (1.25, 1.75, 2.5, 3.5)
     data = data_of(load_bench("default"), plan)
     speeds = [set(np.unique(part.states[:, 1])) for part in (data.training, data.judging, data.validation)]
@@ -92,7 +92,7 @@ def test_the_sets_are_split_as_the_source_does_and_never_meet() -> None:
 
 
 def test_the_study_gives_a_line_for_each_size_and_more_neurons_fit_better() -> None:
-    plan = Plan(points=60, settings=Settings(epochs=60))
+    plan = TrainingPlan(points=60, settings=DescentSettings(epochs=60))
     data = data_of(load_bench("default"), plan)
     found = list(study(data, plan, (1, 3, 8)))
     assert [one.neurons for one in found] == [1, 3, 8]

@@ -14,11 +14,11 @@ import pytest
 from hilplant.bench import load_bench
 from hilplant.bus.frame import Frame
 from hilplant.bus.transport import SendResult
+from hilplant.cli.actions import control as velocity_command
 from hilplant.control.catalogue import controller_named, without_network
 from hilplant.control.records import Command, Measured
 from hilplant.control.seat import LoopSeat, Seat
-from hilplant.ecu import velocity_command
-from hilplant.ecu.velocity_node import Report, VelocityNode, run_velocity_node, status_period_ns
+from hilplant.ecu.velocity_node import VelocityNode, VelocityReport, run_velocity_node, status_period_ns
 from hilplant.failure import Failure
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.server import build_loop
@@ -192,5 +192,5 @@ def test_a_controller_inside_the_loop_does_what_the_study_s_loop_does(name):
     ],
 )
 def test_a_line_tells_the_speed_or_why_there_is_none(speed, lost, told):
-    report = Report(1.5, 3.14, Measured(speed, 2.0, 0.0), Command(12.0, 1.0), lost)
+    report = VelocityReport(1.5, 3.14, Measured(speed, 2.0, 0.0), Command(12.0, 1.0), lost)
     assert velocity_command._line(report) == f"   1.500 s  wanted  3.140 rad/s, {told}, 12.000 V, fast brush"

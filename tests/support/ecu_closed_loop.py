@@ -6,9 +6,9 @@ from copy import copy
 import numpy as np
 
 from hilplant.bench import Bench
-from hilplant.ecu.relay_controller import State, advance
+from hilplant.ecu.relay_controller import ControllerState, advance
 from hilplant.ecu.settings import controller_settings
-from hilplant.ecu.vocabulary import RELAYS_OFF, Fault, Inputs, Settings, Stalk
+from hilplant.ecu.vocabulary import RELAYS_OFF, EcuInputs, Fault, RelaySettings, Stalk
 from hilplant.models.plant import simulate_rows
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import MILLISECOND_NS, SECOND_NS, TURN_RAD
@@ -27,13 +27,13 @@ class ClosedLoop:
     `park_known` false keeps the park contact from the controller. `turns` is how far the crank has come.
     """
 
-    def __init__(self, bench: Bench, settings: Settings | None = None, delay_ticks: int = 1) -> None:
+    def __init__(self, bench: Bench, settings: RelaySettings | None = None, delay_ticks: int = 1) -> None:
         ticks = max(1, round(bench.ecu.period_ms * MILLISECOND_NS / bench.step_ns))
         if not 0 <= delay_ticks <= ticks:
             raise ValueError(f"delay_ticks must be 0 to {ticks}, the ECU's period, not {delay_ticks}")
         self.settings = settings or controller_settings(bench.ecu)
         self.inputs = bench.input_row.copy()
-        self.ecu, self.relays, self.fault = State(), RELAYS_OFF, Fault.NONE
+        self.ecu, self.relays, self.fault = ControllerState(), RELAYS_OFF, Fault.NONE
         self.park_known = True
         self.time_s, self.turns = 0.0, 0.0
         self.period_s = ticks * bench.step_ns / SECOND_NS
@@ -69,5 +69,5 @@ class ClosedLoop:
         self._angle = seen[_ANGLE]
         self.time_s += self.period_s
         contact = seen[_CONTACT] > 0.5 if self.park_known else None
-        inputs = Inputs(stalk, contact, seen[_CURRENT], seen[_SUPPLY])
+        inputs = EcuInputs(stalk, contact, seen[_CURRENT], seen[_SUPPLY])
         self.ecu, self.relays, self.fault = advance(self.ecu, inputs, self.time_s, self.settings)

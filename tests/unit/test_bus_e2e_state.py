@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from hilplant.bus.e2e_state import ProtectionError, StateMachine, StateMachineSettings, Trust, Verdict
+from hilplant.bus.e2e_state import FrameCheck, ProtectionError, StateMachine, StateMachineSettings, Trust
 from hilplant.bus.protection import Checker, Protection, Protector
 
 KEYS = (
@@ -13,12 +13,12 @@ KEYS = (
     "min_ok_state_invalid", "max_error_state_invalid",
 )  # fmt: skip
 SETTINGS = dict(zip(KEYS, (2, 4, 3, 2, 0, 2, 1, 3, 0), strict=True))
-OK, ERROR = Verdict.OK, Verdict.WRONG_CRC
+OK, ERROR = FrameCheck.OK, FrameCheck.WRONG_CRC
 
 
 def run(settings: StateMachineSettings, verdicts: str) -> str:
     machine = StateMachine(settings)
-    letters = {"o": OK, "r": Verdict.WRONG_COUNTER, "e": ERROR}
+    letters = {"o": OK, "r": FrameCheck.WRONG_COUNTER, "e": ERROR}
     shown = {Trust.NODATA: "n", Trust.INIT: "i", Trust.VALID: "v", Trust.INVALID: "x"}
     return "".join(shown[machine.add(letters[letter])] for letter in verdicts)
 
@@ -87,12 +87,12 @@ def test_a_good_frame_counts_once_the_machine_is_valid_and_a_reset_begins_anew()
         protector.protect(frame)
         return bytes(frame)
 
-    assert [checker.check(next_frame()) for _ in range(3)] == [Verdict.NOT_VALID, OK, OK]
+    assert [checker.check(next_frame()) for _ in range(3)] == [FrameCheck.NOT_VALID, OK, OK]
     assert [checker.check(bytes(8)) for _ in range(2)] == [ERROR, ERROR]
     assert checker.invalid
-    assert [checker.check(next_frame()) for _ in range(3)] == [Verdict.NOT_VALID, Verdict.NOT_VALID, OK]
+    assert [checker.check(next_frame()) for _ in range(3)] == [FrameCheck.NOT_VALID, FrameCheck.NOT_VALID, OK]
     checker.reset()
-    assert [checker.check(next_frame()) for _ in range(2)] == [Verdict.NOT_VALID, OK]
+    assert [checker.check(next_frame()) for _ in range(2)] == [FrameCheck.NOT_VALID, OK]
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from hilplant.bus.e2e_profiles import PROFILES
-from hilplant.bus.protection import Checker, Protection, ProtectionError, Protector, Verdict
+from hilplant.bus.protection import Checker, FrameCheck, Protection, ProtectionError, Protector
 
 #: First frames of zeros, with counter 0: the examples in the tests of the autosar-e2e library.
 PUBLISHED_FRAMES = [
@@ -59,7 +59,7 @@ def test_the_first_frame_of_zeros_is_the_published_one(protection: Protection, e
     frame = bytearray(protection.length)
     Protector(protection).protect(frame)
     assert frame.hex() == expected
-    assert Checker(protection).check(bytes(frame)) is Verdict.OK
+    assert Checker(protection).check(bytes(frame)) is FrameCheck.OK
 
 
 def test_profile_2_equals_the_published_frame() -> None:
@@ -83,7 +83,7 @@ def test_a_long_sequence_is_accepted_and_only_reserved_bits_change(protection: P
     checker = Checker(protection)
     reserved = protection.reserved_places()
     for frame in frames(protection, 600):
-        assert checker.check(frame) is Verdict.OK
+        assert checker.check(frame) is FrameCheck.OK
         changed = int.from_bytes(frame, "little") ^ int.from_bytes(bytes(range(32)), "little")
         assert all(place in reserved for place in range(8 * 32) if changed >> place & 1)
 
@@ -95,14 +95,19 @@ def test_every_flipped_bit_is_found(protection: Protection) -> None:
     for place in range(8 * len(frame)):
         flipped = bytearray(frame)
         flipped[place // 8] ^= 1 << place % 8
-        assert checker.check(bytes(flipped)) is Verdict.WRONG_CRC
+        assert checker.check(bytes(flipped)) is FrameCheck.WRONG_CRC
 
 
 @pytest.mark.parametrize("protection", ONE_OF_EACH, ids=lambda p: f"profile {p.profile}")
 def test_a_repeated_frame_and_the_one_behind_a_lost_one_have_a_wrong_counter(protection: Protection) -> None:
     first, _, third, fourth = frames(protection, 4)
     checker = Checker(protection)
-    wanted = [(first, Verdict.OK), (first, Verdict.WRONG_COUNTER), (third, Verdict.WRONG_COUNTER), (fourth, Verdict.OK)]
+    wanted = [
+        (first, FrameCheck.OK),
+        (first, FrameCheck.WRONG_COUNTER),
+        (third, FrameCheck.WRONG_COUNTER),
+        (fourth, FrameCheck.OK),
+    ]
     assert [checker.check(frame) for frame, _ in wanted] == [verdict for _, verdict in wanted]
 
 
@@ -113,7 +118,7 @@ def test_however_many_frames_are_lost_one_more_is_refused(protection: Protection
     checker = Checker(protection)
     heard = [made[0], *made[1 + lost : 16]]
     verdicts = [checker.check(frame) for frame in heard]
-    assert verdicts == [Verdict.OK, Verdict.WRONG_COUNTER, *[Verdict.OK] * (len(heard) - 2)]
+    assert verdicts == [FrameCheck.OK, FrameCheck.WRONG_COUNTER, *[FrameCheck.OK] * (len(heard) - 2)]
 
 
 def test_a_wrong_checksum_moves_no_counter() -> None:
@@ -121,14 +126,14 @@ def test_a_wrong_checksum_moves_no_counter() -> None:
     first, second = frames(protection, 2)
     checker = Checker(protection)
     broken = bytes([second[0] ^ 1]) + second[1:]
-    wanted = [(first, Verdict.OK), (broken, Verdict.WRONG_CRC), (second, Verdict.OK)]
+    wanted = [(first, FrameCheck.OK), (broken, FrameCheck.WRONG_CRC), (second, FrameCheck.OK)]
     assert [checker.check(frame) for frame, _ in wanted] == [verdict for _, verdict in wanted]
 
 
 def test_lost_frames_are_forgiven_up_to_the_largest_step() -> None:
     protection = Protection(5, 8, data_id=1, max_delta_counter=3)
     made = frames(protection, 6)
-    for index, verdict in ((3, Verdict.OK), (4, Verdict.WRONG_COUNTER)):
+    for index, verdict in ((3, FrameCheck.OK), (4, FrameCheck.WRONG_COUNTER)):
         checker = Checker(protection)
         checker.check(made[0])
         assert checker.check(made[index]) is verdict
@@ -139,9 +144,9 @@ def test_after_a_reset_any_counter_is_good_again() -> None:
     made = frames(protection, 9)
     checker = Checker(protection)
     checker.check(made[0])
-    assert checker.check(made[8]) is Verdict.WRONG_COUNTER
+    assert checker.check(made[8]) is FrameCheck.WRONG_COUNTER
     checker.reset()
-    assert checker.check(made[8]) is Verdict.OK
+    assert checker.check(made[8]) is FrameCheck.OK
 
 
 def test_the_free_nibble_beside_a_short_counter_stays_free() -> None:

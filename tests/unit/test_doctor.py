@@ -9,7 +9,7 @@ import pytest
 from hilplant import doctor
 from hilplant.cli.actions.doctor import print_findings
 from hilplant.doctor import can_bus, real_time
-from hilplant.doctor.finding import Finding
+from hilplant.doctor.finding import MachineFinding
 
 
 @pytest.fixture
@@ -29,7 +29,7 @@ def machine(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def states(findings: Iterator[Finding]) -> set[str]:
+def states(findings: Iterator[MachineFinding]) -> set[str]:
     return {finding.state for finding in findings}
 
 

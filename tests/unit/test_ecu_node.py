@@ -9,10 +9,10 @@ from hilplant.bench.ecu_side import EcuSide
 from hilplant.bus.codec import ReceivedMessage, SentMessage, SignalMapping, Timing, received_message, sent_message
 from hilplant.bus.frame import Frame
 from hilplant.bus.transport import SendResult
-from hilplant.ecu import command
+from hilplant.cli.actions import ecu as command
 from hilplant.ecu.chart import Phase
-from hilplant.ecu.node import EcuNode, Report, run_ecu
-from hilplant.ecu.vocabulary import Fault, Master, Settings, Stalk
+from hilplant.ecu.node import EcuNode, EcuReport, run_ecu
+from hilplant.ecu.vocabulary import Fault, Master, RelaySettings, Stalk
 from hilplant.runtime.clock import VirtualClock
 from hilplant.signals import ECU_FAULTS, ECU_HEARD, ECU_SAID, ECU_STATES
 from hilplant.units import MILLISECOND_NS
@@ -108,7 +108,7 @@ class Seat:
     def __init__(self, stalk_timeout_ns: int = 0) -> None:
         self.wire = Wire()
         self.now_ms = 0
-        self.node = EcuNode(side(stalk_timeout_ns), self.wire, Settings())
+        self.node = EcuNode(side(stalk_timeout_ns), self.wire, RelaySettings())
 
     def poll(self, stalk: Stalk, park: bytes | None, milliseconds: int = 1, motor: bytes | None = None) -> list[Frame]:
         """Poll every millisecond for a while with a park frame each time; return what was sent to the relays."""
@@ -211,7 +211,7 @@ def test_a_stalk_on_the_bus_goes_before_the_hand_at_this_end_once_it_was_heard(s
 def test_the_flick_button_is_heard_and_a_stalk_without_a_pause_has_the_first(seat):
     seat.hear(stage=0, flick=True)
     assert seat.poll(OFF, CLOSED)[-1] == RUN_FAST
-    reports: list[Report] = []
+    reports: list[EcuReport] = []
     seat.node.report = reports.append
     seat.hear(stage=1)
     seat.poll(OFF, CLOSED)
@@ -246,7 +246,7 @@ def test_release_sends_the_relays_off_whatever_was_due(seat):
 
 
 def test_the_loop_polls_by_its_clock_and_releases_the_relays_when_told_to_stop_or_broken_off(seat):
-    reports: list[Report] = []
+    reports: list[EcuReport] = []
     seat.node.report = reports.append
     seat.wire.arriving = [Frame(512, OPEN)]
     run_ecu(seat.node, lambda _: SLOW, VirtualClock(), lambda: len(reports) == 20, pause_ns=2 * MILLISECOND_NS)
@@ -268,7 +268,7 @@ def test_the_bench_says_how_often_the_ecu_decides(tmp_path, monkeypatch):
     monkeypatch.setattr(command, "run_ecu", lambda *_, pause_ns: pauses.append(pause_ns))
     bench = tmp_path / "bench.yaml"
     bench.write_text("extends: virtual.yaml\nname: test\necu: {period_ms: 40}\n")
-    assert command.ecu_command(str(bench), 1.0, "0:off") == 0
+    command.ecu_command(str(bench), 1.0, "0:off")
     assert pauses == [40 * MILLISECOND_NS]
 
 
@@ -286,5 +286,5 @@ def test_without_a_standard_input_the_stalk_stays_off(monkeypatch):
     stalks: list[Stalk] = []
     monkeypatch.setattr(command, "run_ecu", lambda _, source, *rest, pause_ns: stalks.append(source(3.0)))
     monkeypatch.setattr(sys, "stdin", None)
-    assert command.ecu_command("virtual", 1.0, None) == 0
+    command.ecu_command("virtual", 1.0, None)
     assert stalks == [Stalk()]

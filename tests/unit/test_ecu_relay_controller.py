@@ -6,29 +6,31 @@ import pytest
 
 from hilplant.bench.ecu_description import ControllerSettings
 from hilplant.ecu.chart import Phase
-from hilplant.ecu.relay_controller import State, advance
+from hilplant.ecu.relay_controller import ControllerState, advance
 from hilplant.ecu.settings import controller_settings
-from hilplant.ecu.vocabulary import INTERVALS, RELAYS_OFF, Fault, Inputs, Master, Relays, Settings, Stalk
+from hilplant.ecu.vocabulary import INTERVALS, RELAYS_OFF, EcuInputs, Fault, Master, RelayCommand, RelaySettings, Stalk
 from hilplant.signals import ECU_FAULTS, ECU_STATES, STALK_POSITIONS
 
 POLL_S = 1.0 / 256.0  # sums of it are exact
-SETTINGS = Settings()
+SETTINGS = RelaySettings()
 OFF, SLOW, FAST = Stalk(), Stalk(Master.SLOW), Stalk(Master.FAST)
-DRIVE = Relays(on=True, fast=False)
+DRIVE = RelayCommand(on=True, fast=False)
 
 
 class Bench:
     """Plays inputs to a controller and keeps its answers."""
 
-    def __init__(self, settings: Settings = SETTINGS) -> None:
+    def __init__(self, settings: RelaySettings = SETTINGS) -> None:
         self.settings = settings
-        self.state, self.relays, self.fault, self.now_s = State(), RELAYS_OFF, Fault.NONE, 0.0
+        self.state, self.relays, self.fault, self.now_s = ControllerState(), RELAYS_OFF, Fault.NONE, 0.0
 
-    def play(self, seconds: float, stalk: Stalk, contact: bool | None, current_a=math.nan, supply_v=math.nan) -> Relays:
+    def play(
+        self, seconds: float, stalk: Stalk, contact: bool | None, current_a=math.nan, supply_v=math.nan
+    ) -> RelayCommand:
         """Hold the inputs for a while, at least for one poll."""
         for _ in range(max(1, round(seconds / POLL_S))):
             self.now_s += POLL_S
-            inputs = Inputs(stalk, contact, current_a, supply_v)
+            inputs = EcuInputs(stalk, contact, current_a, supply_v)
             self.state, self.relays, self.fault = advance(self.state, inputs, self.now_s, self.settings)
         return self.relays
 
@@ -54,8 +56,8 @@ def test_the_names_on_the_bus_are_those_of_the_controller():
 
 
 def test_the_benchs_defaults_are_the_controllers():
-    assert set(ControllerSettings.model_fields) == set(Settings._fields)
-    assert controller_settings(ControllerSettings()) == Settings()
+    assert set(ControllerSettings.model_fields) == set(RelaySettings._fields)
+    assert controller_settings(ControllerSettings()) == RelaySettings()
 
 
 def test_it_begins_off_and_stays_off(bench):
@@ -74,7 +76,7 @@ def test_a_park_switch_that_is_silent_at_rest_is_reported_after_a_while_and_noth
 
 
 def test_where_the_wiper_rests_with_an_open_contact_silence_at_rest_moves_nothing():
-    seat = Bench(Settings(rests_open=True))
+    seat = Bench(RelaySettings(rests_open=True))
     seat.play(1.0, OFF, None)
     assert seat.play(5.0, OFF, False) == RELAYS_OFF
     assert seat.fault is Fault.NONE

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hilplant.failure import Failure
-from hilplant.identify.genetic import Settings, Space, first_population, genetic, mutate, offspring, order_of
+from hilplant.identify.genetic import SearchSettings, Space, first_population, genetic, mutate, offspring, order_of
 from hilplant.identify.journal import Journal
 from hilplant.identify.optimisers import OPTIMISERS, optimiser
 
@@ -17,12 +17,12 @@ def bowl(sets):
 
 
 def test_the_settings_are_those_of_table_5_7():
-    assert Settings()[:5] == (40, 0.5, 5, 0.1, 200)
+    assert SearchSettings()[:5] == (40, 0.5, 5, 0.1, 200)
 
 
 @pytest.mark.parametrize("name", OPTIMISERS)
 def test_every_optimiser_comes_near_the_minimum_and_repeats_itself(name):
-    settings = Settings(generations=60)
+    settings = SearchSettings(generations=60)
     first, second = (optimiser(name)(bowl, SPACE, settings, 3, lambda _: None) for _ in range(2))
     assert first.cost < 2e-3
     assert bowl(first.values[np.newaxis])[0] == first.cost
@@ -44,7 +44,7 @@ def test_only_individuals_that_changed_are_evaluated_again():
         asked.append(sets.copy())
         return bowl(sets)
 
-    genetic(remember, SPACE, Settings(generations=20), 1)
+    genetic(remember, SPACE, SearchSettings(generations=20), 1)
     assert len(asked[0]) == 40
     assert all(10 <= len(sets) <= 35 for sets in asked[1:])
     everyone = np.vstack(asked)
@@ -57,7 +57,7 @@ def test_children_lie_between_their_parents_as_5_27_and_5_28_say():
     random = np.random.default_rng(5)
     parents = np.array([SPACE.low, SPACE.high])
     costs = np.array([1.0, 1.0])
-    children = offspring(random, parents, costs, Settings(population=42), SPACE)
+    children = offspring(random, parents, costs, SearchSettings(population=42), SPACE)
     total = children[0::2] + children[1::2]
     allowed = np.array([2.0 * SPACE.low, SPACE.low + SPACE.high, 2.0 * SPACE.high])
     assert all(np.min(np.max(np.abs(allowed - row), axis=1)) < 1e-12 for row in total)
@@ -68,7 +68,7 @@ def test_children_lie_between_their_parents_as_5_27_and_5_28_say():
 
 
 def test_the_elite_is_never_mutated_and_mutations_are_a_tenth_of_the_genes():
-    random, settings = np.random.default_rng(2), Settings()
+    random, settings = np.random.default_rng(2), SearchSettings()
     people = first_population(random, SPACE, 40)
     before = people.copy()
     changed = mutate(random, people, settings, SPACE)
@@ -88,7 +88,7 @@ def test_slow_stays_above_fast_where_that_is_asked_for():
         seen.append(sets.copy())
         return np.sum((sets - np.array([0.6, 1.9, 1.0, 1.0])) ** 2, axis=1)  # pulls against the order
 
-    genetic(remember, space, Settings(generations=15), 4)
+    genetic(remember, space, SearchSettings(generations=15), 4)
     everyone = np.vstack(seen)
     assert np.all(everyone[:, 0] >= everyone[:, 1])
     assert np.all(everyone[:, 2] >= everyone[:, 3])
@@ -97,7 +97,7 @@ def test_slow_stays_above_fast_where_that_is_asked_for():
 @pytest.mark.parametrize("name", OPTIMISERS)
 def test_a_journal_cut_anywhere_leads_to_the_same_bits(name, tmp_path):
     """A run that dies after a few populations and goes on ends as one that was never disturbed."""
-    settings, calls = Settings(generations=12), []
+    settings, calls = SearchSettings(generations=12), []
 
     def dies_after(count):
         def evaluate(sets):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hilplant.failure import Failure
-from hilplant.identify.sequence import Player, Stage, advance, figure_5_4, informative, play, scenario_text
+from hilplant.identify.sequence import Player, SequenceStage, advance, figure_5_4, informative, play, scenario_text
 from hilplant.identify.sequence_runs import Rig, drive, stages_of, write_scenario
 from hilplant.simulation.run import simulate
 
@@ -29,7 +29,7 @@ def test_the_better_one_starts_from_rest_at_each_voltage_in_both_modes() -> None
 
 
 def test_an_edge_counts_only_after_the_contact_was_open() -> None:
-    stages = [Stage(True, False, 12.0, 2, 100.0), Stage(True, False, 14.0, 1, 100.0)]
+    stages = [SequenceStage(True, False, 12.0, 2, 100.0), SequenceStage(True, False, 14.0, 1, 100.0)]
     player = Player()
     for tick, contact in enumerate([1, 1, 0, 0, 1, 1, 0, 1]):
         before, player = player, advance(player, stages, bool(contact), 0.1 * tick)
@@ -38,13 +38,15 @@ def test_an_edge_counts_only_after_the_contact_was_open() -> None:
 
 
 def test_a_dead_park_switch_ends_each_stage_in_time() -> None:
-    begun = play([Stage(True, False, 12.0, 1, 2.0), Stage(True, True, 12.0, 1, 3.0)], 0.1, lambda _: False)
+    begun = play(
+        [SequenceStage(True, False, 12.0, 1, 2.0), SequenceStage(True, True, 12.0, 1, 3.0)], 0.1, lambda _: False
+    )
     assert [time_s for time_s, _ in begun] == pytest.approx([0.0, 2.0, 5.0])
 
 
 def test_the_scenario_names_only_what_changes() -> None:
-    text = scenario_text([(0.0, Stage(False, False, 10.0, 0, 1.0)), (1.0, Stage(True, False, 10.0, 1, 9.0)),
-                          (2.5, Stage(True, False, 10.0, 1, 9.0))], "t")  # fmt: skip
+    off, slow = SequenceStage(False, False, 10.0, 0, 1.0), SequenceStage(True, False, 10.0, 1, 9.0)
+    text = scenario_text([(0.0, off), (1.0, slow), (2.5, slow)], "t")
     assert "[1, true]" in text and text.count("- [") == 4 and "seconds: 2.5" in text
 
 

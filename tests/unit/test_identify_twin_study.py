@@ -2,7 +2,7 @@
 
 import pytest
 
-from hilplant.identify.profile import Interval
+from hilplant.identify.profile import ConfidenceInterval
 from hilplant.thesis.coverage import Trial, coverage, holds
 from hilplant.thesis.twin_study import reached
 
@@ -18,10 +18,10 @@ def test_trials_are_counted_and_their_errors_averaged():
 
 
 def test_an_open_side_holds_everything():
-    assert holds(Interval(None, 2.0), 1.0)
-    assert holds(Interval(0.5, None), 1.0)
-    assert not holds(Interval(None, 0.5), 1.0)
-    assert not holds(Interval(1.5, 2.0), 1.0)
+    assert holds(ConfidenceInterval(None, 2.0), 1.0)
+    assert holds(ConfidenceInterval(0.5, None), 1.0)
+    assert not holds(ConfidenceInterval(None, 0.5), 1.0)
+    assert not holds(ConfidenceInterval(1.5, 2.0), 1.0)
 
 
 GOOD = {

@@ -6,17 +6,17 @@ import re
 import numpy as np
 import pytest
 
-from hilplant.mechanics.collision import Line, Side, check_clearance, clearance
+from hilplant.mechanics.collision import Line, SweepSide, check_clearance, clearance
 from hilplant.mechanics.design_points import GeometryError
 from hilplant.units import RAD_PER_DEG, TURN_RAD
 
 KNOTS = 24
 
 
-def side(pivot: tuple[float, float], lines: list[Line], swing_rad: float) -> Side:
+def side(pivot: tuple[float, float], lines: list[Line], swing_rad: float) -> SweepSide:
     """Return a wiper that swings clockwise and back over one turn of the crank."""
     crank = np.linspace(0.0, TURN_RAD, KNOTS + 1)
-    return Side(pivot, lines, 1.0 - swing_rad * (1.0 - np.cos(crank)) / 2.0)
+    return SweepSide(pivot, lines, 1.0 - swing_rad * (1.0 - np.cos(crank)) / 2.0)
 
 
 def test_distances_are_those_of_many_points_along_the_lines() -> None:

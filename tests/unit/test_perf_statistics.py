@@ -7,7 +7,7 @@ from hilplant.failure import Failure
 from hilplant.perf.cyclictest import latencies
 from hilplant.perf.machine import cpu_model
 from hilplant.perf.perf import PARTS, chosen_parts
-from hilplant.perf.results import Goal, Measured, Row
+from hilplant.perf.results import Goal, PartResult, Row
 from hilplant.perf.samples import alternate, histogram_quantile, middle, quantile
 
 #: As `cyclictest -q -h 20` prints it: 4 samples within the histogram, 1 beyond it.
@@ -100,8 +100,8 @@ def test_amounts_keep_about_three_digits(value, text):
 
 def test_the_table_fits_100_columns_and_says_what_was_not_measured(capsys):
     rows = [Row("in-memory bus, 2 in, 4 out, p99", 12345.6, "us", 9876.5, "cyclictest", Goal(1.5))]
-    missing = Measured(remarks=["not measured: no [cyclictest]"])
-    print_table({"tick": Measured(rows), "wakeup": missing}, "here")
+    missing = PartResult(remarks=["not measured: no [cyclictest]"])
+    print_table({"tick": PartResult(rows), "wakeup": missing}, "here")
     printed = capsys.readouterr().out
     assert max(len(line) for line in printed.splitlines()) <= 100
     assert "1.25" in printed

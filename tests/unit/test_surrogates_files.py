@@ -8,8 +8,8 @@ from hilplant.bench import check_bench, load_bench
 from hilplant.bench.load_files import TORQUE_FORMAT
 from hilplant.checked_yaml.checksummed import flaw, seal
 from hilplant.resources import shipped
-from hilplant.train.levenberg_marquardt import Settings
-from hilplant.train.torque import Plan, data_of, train
+from hilplant.train.levenberg_marquardt import DescentSettings
+from hilplant.train.torque import TrainingPlan, data_of, train
 from hilplant.train.torque_file import content_of
 from hilplant.train.writing import sealed_text
 
@@ -29,7 +29,7 @@ def problems(folder: Path, trained: str | bytes, plant: str = NETWORK) -> list[s
 
 def small_file(seed: int) -> str:
     bench = load_bench("default")
-    plan = Plan(neurons=4, harmonics=1, starts=2, points=40, seed=seed, settings=Settings(epochs=20))
+    plan = TrainingPlan(neurons=4, harmonics=1, starts=2, points=40, seed=seed, settings=DescentSettings(epochs=20))
     data = data_of(bench, plan)
     return sealed_text(content_of(bench, data, train(data, plan), "a test")[0])
 

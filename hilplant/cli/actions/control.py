@@ -10,7 +10,7 @@ from hilplant.bus.transport import open_transport
 from hilplant.control.catalogue import controller_named, without_network
 from hilplant.control.reference import parse_reference
 from hilplant.control.seat import Seat
-from hilplant.ecu.velocity_node import Report, VelocityNode, run_velocity_node, status_period_ns
+from hilplant.ecu.velocity_node import VelocityNode, VelocityReport, run_velocity_node, status_period_ns
 from hilplant.runtime.clock import WallClock
 from hilplant.runtime.server import StopRequest, ended_by_signals
 from hilplant.units import SECOND_NS
@@ -36,11 +36,11 @@ def control_command(
             node.close()
 
 
-def _printer() -> Callable[[Report], None]:
+def _printer() -> Callable[[VelocityReport], None]:
     """Return what prints a line each second, and whenever the plant falls silent or speaks again."""
     last: list[object] = [None]
 
-    def tell(report: Report) -> None:
+    def tell(report: VelocityReport) -> None:
         told = (int(report.time_s), report.lost)
         if told != last[0]:
             last[0] = told
@@ -49,7 +49,7 @@ def _printer() -> Callable[[Report], None]:
     return tell
 
 
-def _line(report: Report) -> str:
+def _line(report: VelocityReport) -> str:
     speed, brush = report.measured.speed_rad_s, "fast" if report.command.fast > 0.5 else "slow"
     state = "no frame in this period" if math.isnan(speed) else f"speed {speed:6.3f} rad/s"
     if report.lost:

@@ -12,7 +12,7 @@ from rich.console import Console
 from hilplant.atomic_write import cannot_be_written, make_folder
 from hilplant.cli.display import Scene, watch
 from hilplant.demo.plant import Failed, Message, Started, serve_demo
-from hilplant.demo.sequence import WHOLE_S, Sequence, sequence
+from hilplant.demo.sequence import WHOLE_S, DemoSequence, sequence
 from hilplant.demo.summary import summarise
 from hilplant.ecu.stalk import stalk_at, stalk_words
 from hilplant.failure import Failure
@@ -49,7 +49,7 @@ def _clear_folder(folder: Path) -> Path:
     return folder
 
 
-def _serve_and_watch(plan: Sequence, path: Path, console: Console) -> Summary:
+def _serve_and_watch(plan: DemoSequence, path: Path, console: Console) -> Summary:
     """Run the plant in a process of its own and show it until it ends; Ctrl-C ends it early."""
     context = multiprocessing.get_context("spawn")
     here, there = context.Pipe()
@@ -69,7 +69,7 @@ def _serve_and_watch(plan: Sequence, path: Path, console: Console) -> Summary:
             child.kill()
 
 
-def _follow(plan: Sequence, child: SpawnProcess, pipe: "Connection[None, Message]", console: Console) -> Summary:
+def _follow(plan: DemoSequence, child: SpawnProcess, pipe: "Connection[None, Message]", console: Console) -> Summary:
     interrupted = False
     try:
         started = _next_message(pipe)
@@ -96,6 +96,6 @@ def _next_message(pipe: "Connection[None, Message]") -> Message:
         return Failed("ended before the plant had started")
 
 
-def _scene(plan: Sequence, time_s: float) -> Scene:
+def _scene(plan: DemoSequence, time_s: float) -> Scene:
     progress = f"{time_s:.1f} of {plan.seconds:g} s"
     return Scene("hilplant demo", progress, stalk_words(stalk_at(plan.turns, time_s)))

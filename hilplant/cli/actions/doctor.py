@@ -5,12 +5,12 @@ import textwrap
 from rich.console import Console
 from rich.text import Text
 
-from hilplant.doctor import Finding
+from hilplant.doctor import MachineFinding
 
 _COLOURS = {"ok": "green", "warn": "yellow", "bad": "red"}
 
 
-def print_findings(findings: list[Finding]) -> None:
+def print_findings(findings: list[MachineFinding]) -> None:
     """Show the findings on stdout, one to a line where no terminal is to be fitted, each command whole to be copied."""
     console = Console(highlight=False)
     width = max(len(finding.name) for finding in findings)

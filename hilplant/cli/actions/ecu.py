@@ -11,7 +11,7 @@ import typer
 from hilplant.bench import load_bench
 from hilplant.bus.transport import open_transport
 from hilplant.cli.voice import Voice
-from hilplant.ecu.node import EcuNode, Report, run_ecu
+from hilplant.ecu.node import EcuNode, EcuReport, run_ecu
 from hilplant.ecu.settings import controller_settings
 from hilplant.ecu.stalk import StalkSource, TypedStalk, parse_stalk, stalk_at, stalk_words
 from hilplant.ecu.vocabulary import Fault, Stalk
@@ -68,11 +68,11 @@ def _untouched(elapsed_s: float) -> Stalk:
     return stalk_at((), elapsed_s)
 
 
-def _printer(voice: Voice) -> Callable[[Report], None]:
+def _printer(voice: Voice) -> Callable[[EcuReport], None]:
     """Return what prints a line whenever the ECU changes its mind."""
     last: list[object] = [None]
 
-    def tell(report: Report) -> None:
+    def tell(report: EcuReport) -> None:
         told = (report.stalk, report.state.phase, report.relays, report.fault, report.park_known)
         if told != last[0]:
             last[0] = told
@@ -81,7 +81,7 @@ def _printer(voice: Voice) -> Callable[[Report], None]:
     return tell
 
 
-def _line(report: Report) -> str:
+def _line(report: EcuReport) -> str:
     relays = "OFF" if not report.relays.on else "FAST" if report.relays.fast else "SLOW"
     silent = "" if report.park_known else "; no word from the park switch"
     fault = "" if report.fault is Fault.NONE else f"; fault {report.fault.value}"

@@ -7,7 +7,7 @@ import typer
 
 from hilplant.cli.progress import progress_shown
 from hilplant.identify.from_files import Request, figures, identify_files
-from hilplant.identify.starting_point import Known
+from hilplant.identify.starting_point import StartingPoint
 from hilplant.identify.three_stages import Identified
 from hilplant.identify.validation import unexplained
 
@@ -27,7 +27,7 @@ def run_identification(request: Request, report: Path | None) -> dict[str, Any]:
     return figures(done.found)
 
 
-def _print(found: Identified, known: Known, written: list[Path]) -> None:
+def _print(found: Identified, known: StartingPoint, written: list[Path]) -> None:
     for note in known.notes:
         typer.echo(note)
     _print_parameters(found)

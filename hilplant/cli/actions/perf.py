@@ -7,7 +7,7 @@ from rich.table import Table
 
 from hilplant.cli.progress import progress_shown
 from hilplant.perf.perf import measure
-from hilplant.perf.results import Measured, Row
+from hilplant.perf.results import PartResult, Row
 
 _WIDTH = 100
 _COLUMNS: tuple[tuple[str, Literal["left", "right"]], ...] = (
@@ -43,7 +43,7 @@ def measure_and_print(only: str | None = None) -> dict[str, float | str]:
     return found.figures
 
 
-def print_table(parts: dict[str, Measured], title: str) -> None:
+def print_table(parts: dict[str, PartResult], title: str) -> None:
     """Print every part's rows, then its remarks."""
     table = Table(title=title, title_justify="left", width=_WIDTH)
     for name, justify in _COLUMNS:

@@ -43,7 +43,9 @@ def run(  # noqa: PLR0913, PLR0917
     Ends when the time is up, or on SIGTERM or Ctrl-C. With --controller, relays and supply are commanded inside the
     loop in every tick, and not by frames; docs/control.md tells the names.
     """
-    from hilplant.cli.actions.run import Inside, Record, run_daemon
+    from hilplant.cli.actions.run import run_daemon
+    from hilplant.ecu.loop_controller import Inside
+    from hilplant.recording.beside_loop import RecordTo
     from hilplant.recording.rotation import Rotation
 
     if reference is not None and controller is None:
@@ -51,7 +53,7 @@ def run(  # noqa: PLR0913, PLR0917
     rotation = Rotation.parse(rotate, keep)
     if rotation.in_parts and record is None:
         raise Failure("--rotate is about a recording: give --record FILE with it")
-    to = None if record is None else Record(record, rotation)
+    to = None if record is None else RecordTo(record, rotation)
     claim(json_file)
     inside = None if controller is None else Inside(controller, reference or "3.14")
     summary = run_daemon(bench, seconds, to, channel, inside)

@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from hilplant.mechanics.motion import motion
-from hilplant.mechanics.wiper import Side, SideParts, Wiper, WiperParts, assemble
+from hilplant.mechanics.wiper import SideParts, Wiper, WiperParts, WiperSide, assemble
 from hilplant.units import TURN_RAD
 
 Floats = NDArray[np.float64]
@@ -32,7 +32,7 @@ def ending(state: Floats, length: float) -> Floats:
     return np.asarray(2.0 * state[:, :2] - beginning(state, length))
 
 
-def states(wiper: Wiper, coordinates: Floats, side: Side) -> list[Floats]:
+def states(wiper: Wiper, coordinates: Floats, side: WiperSide) -> list[Floats]:
     """Return the coordinates of the side's bodies from the pivot outwards, [m, 3] each."""
     firsts = [3 * wiper.mechanism.bodies[name] for name in side.bodies]
     return [coordinates[:, first : first + 3] for first in firsts]
