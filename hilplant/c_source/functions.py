@@ -8,7 +8,7 @@ from hilplant.c_source.c_types import NOTHING, Class, Record, Type, declared_typ
 from hilplant.c_source.program import Program, Translated, plain
 from hilplant.c_source.scope import Scope, Variable, c_name
 from hilplant.c_source.statements import INDENT, block
-from hilplant.c_source.subset import Source
+from hilplant.c_source.subset import FunctionSource
 
 _ROUNDS = 5
 
@@ -39,13 +39,13 @@ def translate(program: Program, function: Any, given: tuple[Type, ...]) -> Trans
     )
 
 
-def _source(function: Any, given: tuple[Type, ...]) -> Source:
+def _source(function: Any, given: tuple[Type, ...]) -> FunctionSource:
     writer = jit.WRITTEN_OUT.get(function)
     if writer is None:
-        return Source.of(function)
+        return FunctionSource.of(function)
     lines, names = writer(*(kind.cls if isinstance(kind, Class | Record) else None for kind in given))
-    python = Source.of(function)
-    return Source.written(function.__name__, ", ".join(python.arguments), lines, names)
+    python = FunctionSource.of(function)
+    return FunctionSource.written(function.__name__, ", ".join(python.arguments), lines, names)
 
 
 def _name(function: Any, given: tuple[Type, ...]) -> str:
@@ -55,7 +55,7 @@ def _name(function: Any, given: tuple[Type, ...]) -> str:
     return f"{function.__name__}_{kind.cls.__name__.lower()}"
 
 
-def _parameters(source: Source, given: tuple[Type, ...]) -> dict[str, Type]:
+def _parameters(source: FunctionSource, given: tuple[Type, ...]) -> dict[str, Type]:
     """Return the parameters' types: those that are declared, else those that are given."""
     if len(given) != len(source.arguments) or source.tree.args.kwonlyargs or source.tree.args.vararg:
         source.fail(source.tree.args, f"takes {len(source.arguments)} arguments by position, not {len(given)}")

@@ -9,7 +9,7 @@ from typing import Any
 from hilplant.c_source.c_types import Class, Type
 from hilplant.c_source.expression import Expression
 from hilplant.c_source.program import RESERVED, Program
-from hilplant.c_source.subset import Source
+from hilplant.c_source.subset import FunctionSource
 
 #: The answer of :meth:`Scope.known` for what is known at run time only.
 UNKNOWN = object()
@@ -28,7 +28,7 @@ class Scope:
     """One function, with the types of its parameters and of the variables that were met so far."""
 
     program: Program
-    source: Source
+    source: FunctionSource
     variables: dict[str, Variable]
     returns: Type | None = None
     temporaries: int = 0

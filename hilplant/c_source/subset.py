@@ -18,7 +18,7 @@ class NotInSubset(Failure):
 
 
 @dataclass(frozen=True)
-class Source:
+class FunctionSource:
     """One Python function that is to be translated; `names` are those that it takes from its module."""
 
     file: str
@@ -27,7 +27,7 @@ class Source:
     annotations: dict[str, Any]
 
     @classmethod
-    def of(cls, function: Callable[..., Any]) -> "Source":
+    def of(cls, function: Callable[..., Any]) -> "FunctionSource":
         """Read a function's text; `function` is not compiled, or the Python in a compiled one."""
         python = getattr(function, "py_func", function)
         lines, first = inspect.getsourcelines(python)
@@ -38,7 +38,7 @@ class Source:
         return cls(python.__code__.co_filename, tree, names, typing.get_type_hints(python))
 
     @classmethod
-    def written(cls, name: str, head: str, lines: list[str], names: dict[str, Any]) -> "Source":
+    def written(cls, name: str, head: str, lines: list[str], names: dict[str, Any]) -> "FunctionSource":
         """Return the function that is written for the records among its arguments."""
         tree = ast.parse("\n    ".join([f"def {name}({head}):", *lines])).body[0]
         assert isinstance(tree, ast.FunctionDef)

@@ -37,7 +37,7 @@ _MORE: dict[Any, tuple[Type, ...]] = {
 }  # fmt: skip
 
 
-class Plant(ctypes.Structure):
+class CompiledPlant(ctypes.Structure):
     """``hilplant_plant`` in plant.h."""
 
     _fields_ = (
@@ -49,7 +49,7 @@ class Plant(ctypes.Structure):
     )
 
     @classmethod
-    def of(cls, parameters: Rows, tables: Rows) -> "Plant":
+    def of(cls, parameters: Rows, tables: Rows) -> "CompiledPlant":
         """Return the plant of packed parameters and tables, which must live as long as it does."""
         return cls(_at(parameters), len(parameters), _at(tables), *tables.shape[:2])
 
@@ -67,7 +67,7 @@ def compile_step(folder: Path, *more_flags: str) -> SimulateRows:
     function = _library(folder, more_flags).hilplant_simulate
 
     def simulate(state: Rows, inputs: Rows, parameters: Rows, tables: Rows, outputs: Rows) -> None:
-        plant = Plant.of(parameters, tables)
+        plant = CompiledPlant.of(parameters, tables)
         function(ctypes.byref(plant), _at(state), ctypes.c_int64(len(inputs)), _at(inputs), _at(outputs))
 
     return simulate
@@ -83,7 +83,7 @@ def compile_batch(folder: Path, columns: Sequence[int], *more_flags: str) -> Sim
     indices = (ctypes.c_int64 * len(columns))(*columns)
 
     def simulate(states: Rows, inputs: Rows, parameters: Rows, tables: Rows, outputs: Rows) -> None:
-        plants = (Plant * len(parameters))(*(Plant.of(row, tables) for row in parameters))
+        plants = (CompiledPlant * len(parameters))(*(CompiledPlant.of(row, tables) for row in parameters))
         sets, ticks, count = (ctypes.c_int64(each) for each in (len(parameters), len(inputs), len(columns)))
         function(plants, sets, _at(states), ticks, _at(inputs), count, indices, _at(outputs))
 
