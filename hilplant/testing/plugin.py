@@ -96,7 +96,7 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
     return report
 
 
-def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "ScenarioFile | None":
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "CollectedScenario | None":
     """Collect `test_*.hil.yaml`: scenarios with an `expect` section."""
     if _SCENARIO_FILE.fullmatch(file_path.name):
         return CollectedScenario.from_parent(parent, path=file_path)
