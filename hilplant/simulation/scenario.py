@@ -20,6 +20,7 @@ from hilplant.checked_yaml.yaml_reader import Document, Location
 from hilplant.declaration import Signal
 from hilplant.ecu.stalk import StalkTurn
 from hilplant.failure import Failure
+from hilplant.faults.written import FaultEntry, Written
 from hilplant.signals import INPUT_INDEX, INPUTS
 from hilplant.simulation.scenario_schema import EntriesOfInputs
 from hilplant.simulation.scenario_sections import read_expectations, read_stalk
@@ -47,6 +48,7 @@ class ScenarioFile(Checked):
     )
     stalk: list[_Pair] = Field(default=[], description="movements of the stalk: pairs of time [s] and movement")
     marks: dict[str, Seconds] = Field(default={}, description="times [s] with names")
+    faults: list[FaultEntry] = Field(default=[], description="faults that are inserted; hilplant faults lists all")
     expect: list[dict[str, Any]] = Field(default=[], description="what is expected of the run")
 
 
@@ -73,8 +75,9 @@ class Entry:
 class Scenario:
     """Entries of each named input by its index, and what differs from the bench's initial state.
 
-    Time 0 is the first tick. `stalk` are the driver's movements, `marks` times [s] with names, `expect` what is
-    expected of the run; `title`, `requirement`, `bench` as written; `path` and `text` are the file's.
+    Time 0 is the first tick. `stalk` are the driver's movements, `marks` times [s] with names, `faults` what is
+    inserted, each with its file and line, `expect` what is expected of the run; `title`, `requirement`, `bench` as
+    written; `path` and `text` are the file's.
     """
 
     seconds: float
@@ -82,6 +85,7 @@ class Scenario:
     entries: dict[int, tuple[Entry, ...]]
     stalk: tuple[StalkTurn, ...] = ()
     marks: dict[str, float] = field(default_factory=dict)
+    faults: Written = ()
     expect: tuple[Placed, ...] = ()
     title: str = ""
     requirement: str = ""
@@ -128,12 +132,14 @@ def load_scenario(name: str | Path) -> Scenario:
     reading.raise_problems()
     if top is None or initial is None:
         raise AssertionError("a description that failed left no problem behind")
+    faults = [(entry, "{}:{}".format(*document.place(("faults", index)))) for index, entry in enumerate(top.faults)]
     return Scenario(
         top.seconds,
         initial.model_dump(include=initial.model_fields_set),
         entries,
         stalk,
         top.marks,
+        faults,
         expect,
         top.title,
         top.requirement,

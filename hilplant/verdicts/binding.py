@@ -97,7 +97,7 @@ def bind(placed: Sequence[Placed], known: Known) -> list[Expectation]:
 def _bound(placed: Placed, known: Known) -> Expectation:
     entry = placed.entry
     window = Window(
-        tuple(_steps(entry.after, known)), tuple(_steps(entry.until, known)), _condition(entry.while_ or {}, known)
+        tuple(_steps(entry.after, known)), tuple(_steps(entry.until, known)), condition_of(entry.while_ or {}, known)
     )
     rule = _rule(entry, known)
     _refuse_beyond(entry, rule, window, known)
@@ -135,11 +135,11 @@ def _stays(entry: w.StaysEntry, known: Known) -> Rule:
 
 
 def _response(entry: w.ResponseEntry, known: Known) -> Rule:
-    return Response(_condition(entry.response, known), _condition(entry.then, known), _floor(entry.within, known))
+    return Response(condition_of(entry.response, known), condition_of(entry.then, known), _floor(entry.within, known))
 
 
 def _count(entry: w.CountEntry, known: Known) -> Rule:
-    return Count(_condition(entry.count, known), *_bounds(entry.limits, 0.0, None))
+    return Count(condition_of(entry.count, known), *_bounds(entry.limits, 0.0, None))
 
 
 def _frames(entry: w.FramesEntry, known: Known) -> Rule:
@@ -163,10 +163,11 @@ def _subject(entry: w.Written, known: Known) -> Condition:
     subject = entry.subject
     if isinstance(subject, str):
         return (level_of(subject, entry.limits, known),)
-    return _condition(subject, known)
+    return condition_of(subject, known)
 
 
-def _condition(parts: Mapping[str, Any], known: Known) -> Condition:
+def condition_of(parts: Mapping[str, Any], known: Known) -> Condition:
+    """Return what must hold together; ValueError for names that nobody knows, and for limits that say nothing."""
     return tuple(_part(name, part, known) for name, part in parts.items())
 
 
@@ -230,7 +231,7 @@ def _name(name: str, known: Known) -> str:
 def _steps(instants: Any, known: Known) -> Iterator[int | Condition]:
     for instant in instants if isinstance(instants, list) else [] if instants is None else [instants]:
         if isinstance(instant, dict):
-            yield _condition(instant, known)
+            yield condition_of(instant, known)
         elif isinstance(instant, str):
             if instant not in known.marks:
                 raise ValueError(f"no mark '{instant}'{suggestion(instant, known.marks)}")

@@ -1,0 +1,89 @@
+"""The `faults` section of a scenario: what is inserted, when, and for how long."""
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from hilplant.checked_yaml.checked import Checked, NotNegative, Positive, wrong
+from hilplant.failure import Failure
+from hilplant.faults.catalogue import fault_named
+from hilplant.faults.timing import Inserted
+from hilplant.signals import INPUTS, OUTPUTS
+from hilplant.verdicts.binding import Known, KnownSignal, condition_of
+
+#: What `when` may name: the plant's signals, of the tick before.
+SIGNALS: Mapping[str, KnownSignal] = {
+    signal.name: KnownSignal(
+        signal.unit,
+        signal.kind != "real",
+        {name: float(index) for index, name in enumerate(signal.choices)} | dict(signal.names),
+    )
+    for signal in (*INPUTS, *OUTPUTS)
+}
+
+
+class FaultEntry(Checked):
+    """One fault and its course; times in seconds from the first tick."""
+
+    fault: str = Field(description="name of a fault; `hilplant faults` lists them")
+    quantities: Annotated[dict[str, float], Field(default_factory=dict, alias="with", description="its quantities")]
+    at: NotNegative = Field(default=0.0, description="from when on it may come [s]")
+    lasts: Positive | None = Field(
+        default=None, alias="for", description="how long it lasts [s]; to the end if left out"
+    )
+    when: Annotated[
+        dict[str, Any], Field(default_factory=dict, description="it comes when this first holds, on the tick before")
+    ]
+    probability: Annotated[float, Field(default=1.0, ge=0.0, le=1.0, description="that it comes, each time")]
+    seed: Annotated[int, Field(default=0, ge=0, description="where the random numbers of `probability` begin")]
+    ramp: NotNegative = Field(default=0.0, description="how long it takes to grow to its full size [s]")
+    pause: NotNegative = Field(default=0.0, description="intermittent: away for this long [s], then there for `for`")
+
+    @field_validator("when")
+    @classmethod
+    def _sound(cls, when: dict[str, Any], _: ValidationInfo) -> dict[str, Any]:
+        try:
+            condition_of(when, Known(1.0, 1.0, SIGNALS, {}))
+        except ValueError as error:
+            raise wrong(text=str(error)) from None
+        return when
+
+    @model_validator(mode="after")
+    def _known(self) -> "FaultEntry":
+        try:
+            fault_named(self.fault).complete(self.quantities)
+        except Failure as error:
+            raise wrong("fault", text=str(error)) from None
+        if self.pause and self.lasts is None:
+            raise wrong("pause", text="an intermittent fault needs `for`, how long it is there each time")
+        return self
+
+    def inserted(self, step_s: float, place: str = "") -> Inserted:
+        """Return it in ticks of `step_s`; times are rounded to ticks, and none that is not 0 becomes 0."""
+        fault = fault_named(self.fault)
+
+        def ticks(seconds: float) -> int:
+            return max(1, round(seconds / step_s)) if seconds > 0.0 else 0
+
+        return Inserted(
+            fault=fault,
+            values=fault.complete(self.quantities),
+            at=round(self.at / step_s),
+            ticks=None if self.lasts is None else ticks(self.lasts),
+            when=condition_of(self.when, Known(step_s, float("inf"), SIGNALS, {})),
+            probability=self.probability,
+            seed=self.seed,
+            ramp=ticks(self.ramp),
+            pause=ticks(self.pause),
+            place=place,
+        )
+
+
+#: Entries with the file and line at which each stands.
+Written = Sequence[tuple[FaultEntry, str]]
+
+
+def inserted(written: Written, step_s: float) -> list[Inserted]:
+    """Return all entries in ticks."""
+    return [entry.inserted(step_s, place) for entry, place in written]
