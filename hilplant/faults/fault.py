@@ -37,7 +37,7 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class Fault:
+class FaultDefinition:
     """One entry of the catalogue; `effect` is its equation or truth table in words."""
 
     name: str

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from random import Random
 
-from hilplant.faults.fault import Fault
+from hilplant.faults.fault import FaultDefinition
 from hilplant.verdicts.expectations import Condition
 from hilplant.verdicts.ticks import margin
 
@@ -21,7 +21,7 @@ class Inserted:
     `pause`, again and again. Each time that it would come it does with `probability`.
     """
 
-    fault: Fault
+    fault: FaultDefinition
     values: Mapping[str, float]
     at: int = 0
     ticks: int | None = None

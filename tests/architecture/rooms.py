@@ -23,7 +23,7 @@ PAGE = ROOT / "docs" / "architecture.md"
 LAYERS: dict[str, str] = {
     "ground": "units failure arrays jit progress atomic_write resources extras declaration signals vcan",
     "physics": "models mechanics control",
-    "borders": "checked_yaml bus verdicts",
+    "borders": "checked_yaml bus verdicts faults",
     "bench": "bench",
     "server": "runtime ecu recording",
     "offline": "c_source simulation measurements motor_bench identify train",
@@ -33,7 +33,7 @@ LAYERS: dict[str, str] = {
 }
 _GROUND = "units failure arrays progress atomic_write resources extras declaration signals"
 _PHYSICS = f"{_GROUND} jit models mechanics control"
-_OFFLINE = f"{_PHYSICS} checked_yaml bus bench runtime ecu recording verdicts"
+_OFFLINE = f"{_PHYSICS} checked_yaml bus bench runtime ecu recording verdicts faults"
 #: What a room may import from, itself apart. A new room says here what it needs, and in LAYERS where it stands.
 ARROWS: dict[str, str] = {
     "units": "",
@@ -53,6 +53,7 @@ ARROWS: dict[str, str] = {
     "checked_yaml": "failure resources",
     "bus": "units declaration signals arrays failure",
     "verdicts": "units declaration signals arrays failure checked_yaml",
+    "faults": "declaration signals arrays failure models checked_yaml verdicts",
     "bench": f"{_PHYSICS} checked_yaml bus",
     "runtime": "units declaration signals arrays failure jit models control bus",
     "ecu": f"{_PHYSICS} bus bench runtime",

@@ -104,16 +104,16 @@ def test_no_ramp_begins_where_a_signal_takes_the_value_of_another(tmp_path: Path
         ("seconds: 1\nsignals:\n  relay_on: [[0, 2]]", "3: relay_on must be true or false, not 2"),
         ("seconds: 1\nsignals:\n  relay_on: [[0, on]]", "3: relay_on must be true or false, not 'on'"),
         (
-            "seconds: 1\nsignals:\n  supply_v: [[0, 41]]",
-            "3: supply_v must be a number from 0 to 40 V, not 41",
+            "seconds: 1\nsignals:\n  supply_v: [[0, 101]]",
+            "3: supply_v must be a number from -16 to 100 V, not 101",
         ),
         (
             "seconds: 1\nsignals:\n  supply_v: [[0, true]]",
-            "3: supply_v must be a number from 0 to 40 V, not true",
+            "3: supply_v must be a number from -16 to 100 V, not true",
         ),
         (
             "seconds: 1\nsignals:\n  supply_v: [[0, .nan]]",
-            "3: supply_v must be a number from 0 to 40 V, not nan",
+            "3: supply_v must be a number from -16 to 100 V, not nan",
         ),
         (
             "seconds: 1\nsignals:\n  screen: [[0, wett]]",
@@ -147,7 +147,7 @@ def test_a_mistake_is_told_with_its_line_and_what_would_be_right(tmp_path: Path,
 
 
 def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
-    text = "seconds: x\nsignals:\n  relay_on: [[0, 2]]\n  supply_v: [[0, 99], [1, true]]\n"
+    text = "seconds: x\nsignals:\n  relay_on: [[0, 2]]\n  supply_v: [[0, 199], [1, true]]\n"
     assert [int(message.split(":")[0]) for message in messages(tmp_path, text)] == [1, 3, 4, 4]
 
 
