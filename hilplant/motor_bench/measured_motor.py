@@ -23,7 +23,8 @@ from hilplant.motor_bench.bench_measurements import (
     run_down,
 )
 from hilplant.motor_bench.data_sheet import SpeedSheet, from_sheet, with_error
-from hilplant.motor_bench.readings import BenchMode, BenchReadings, DataSheet, Given, SheetMode
+from hilplant.motor_bench.readings import BenchMode, BenchReadings, DataSheet, Given, Readings, SheetMode, Windings
+from hilplant.motor_bench.windings import brush_constants_v_s
 from hilplant.units import RAD_PER_S_PER_RPM
 
 MODES = ("slow", "fast")
@@ -32,7 +33,7 @@ MODES = ("slow", "fast")
 Values = dict[str, UFloat]
 
 
-def parameters_of(readings: BenchReadings | DataSheet, beside: Path) -> Values:
+def parameters_of(readings: Readings, beside: Path) -> Values:
     """Return every parameter; files of samples are named from the folder `beside`.
 
     Raises
@@ -41,7 +42,7 @@ def parameters_of(readings: BenchReadings | DataSheet, beside: Path) -> Values:
         For a parameter that nothing tells, with what would, and for readings that contradict each other.
 
     """
-    values = _of_bench(readings, beside) if isinstance(readings, BenchReadings) else _of_sheet(readings)
+    values = _told(readings, beside)
     for name, value in readings.given.model_dump(exclude_none=True).items():
         if name in values and name != "damping_n_m_s":
             raise Failure(f"{name} is given, and the readings tell it too: leave one out")
@@ -49,6 +50,21 @@ def parameters_of(readings: BenchReadings | DataSheet, beside: Path) -> Values:
     for name, remedy in _REMEDIES.items():
         if name not in values:
             raise Failure(f"nothing tells {name}: give {remedy}")
+    return values
+
+
+def _told(readings: Readings, beside: Path) -> Values:
+    if isinstance(readings, BenchReadings):
+        return _of_bench(readings, beside)
+    return _of_windings(readings) if isinstance(readings, Windings) else _of_sheet(readings)
+
+
+def _of_windings(windings: Windings) -> Values:
+    values = {
+        f"{mode}_constant_v_s": quantity(constant)
+        for mode, constant in zip(MODES, brush_constants_v_s(windings), strict=True)
+    }
+    _refuse_impossible(values)
     return values
 
 

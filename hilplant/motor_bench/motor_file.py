@@ -12,7 +12,8 @@ from hilplant.checked_yaml.reading import Reading, shown
 from hilplant.failure import Failure
 from hilplant.measurements.files import sha256
 from hilplant.motor_bench.measured_motor import MODES, Values, parameters_of
-from hilplant.motor_bench.readings import AnyReadings, BenchReadings, DataSheet
+from hilplant.motor_bench.readings import AnyReadings, Readings, Windings
+from hilplant.motor_bench.windings import Armature, counted
 
 _BRUSH = ("resistance_ohm", "inductance_henry", "constant_v_s")
 
@@ -22,11 +23,16 @@ class FoundMotor(NamedTuple):
 
     values: Values
     given: set[str]
+    windings: Windings | None = None
 
     @property
     def figures(self) -> dict[str, float]:
-        """Every value and its standard error by flat names."""
+        """Every value and its standard error by flat names; of windings also what was counted."""
         flat: dict[str, float] = {}
+        if self.windings is not None:
+            armature = Armature.of(self.windings)
+            flat |= {f"{mode}_coils_counted": counted(armature, mode == "fast").mean for mode in MODES}
+            flat["fast_over_slow"] = flat["fast_coils_counted"] / flat["slow_coils_counted"]
         for name, value in self.values.items():
             flat |= {name: value.n, f"{name}_standard_error": value.s}
         return flat
@@ -50,10 +56,11 @@ def motor_from_readings(path: Path, out: Path) -> FoundMotor:
     MotorFile.model_validate(written)
     head = "# From readings; `identified` has their standard errors.\n"
     write_text(out, head + yaml.safe_dump(written, sort_keys=False))
-    return FoundMotor(values, readings.given.model_fields_set)
+    windings = readings if isinstance(readings, Windings) else None
+    return FoundMotor(values, readings.given.model_fields_set, windings)
 
 
-def _read(path: Path) -> BenchReadings | DataSheet:
+def _read(path: Path) -> Readings:
     reading = Reading()
     document = reading.named_file(path)
     if not reading.problems and not isinstance(document.data, dict):
@@ -65,7 +72,7 @@ def _read(path: Path) -> BenchReadings | DataSheet:
     return found.readings
 
 
-def _document(path: Path, readings: BenchReadings | DataSheet, values: Values) -> dict[str, Any]:
+def _document(path: Path, readings: Readings, values: Values) -> dict[str, Any]:
     """Return the motor file; what was given and not told is said to be assumed."""
     given = readings.given.model_fields_set
     brushes = {}

@@ -1,4 +1,4 @@
-"""What a file of readings may say: one motor measured on a bench as in 5.4, or what its data sheet says."""
+"""What a file of readings may say: a motor measured on a bench as in 5.4, its data sheet, or how it is wound."""
 
 from typing import Annotated, Literal, Self
 
@@ -95,7 +95,41 @@ class DataSheet(Sourced):
     given: Given = Given()
 
 
-class AnyReadings(Checked):
-    """One of the two, by its `kind`."""
+class GivenBesideWindings(Given):
+    """Parameters that magnets and coils do not tell."""
 
-    readings: Annotated[BenchReadings | DataSheet, Field(discriminator="kind")]
+    slow_resistance_ohm: Positive
+    fast_resistance_ohm: Positive
+    damping_n_m_s: NotNegative
+    coulomb_torque_n_m: NotNegative = 0.0
+
+
+class Windings(Sourced):
+    """A motor by its magnets, coils and brushes, section 3.3; `fast_brush_deg` counts from the slow brush."""
+
+    kind: Literal["windings"]
+    gear_ratio: Positive
+    flux_density_t: Positive
+    armature_length_m: Positive
+    armature_diameter_m: Positive
+    coils: Annotated[int, Field(ge=3, le=200)]
+    turns: Annotated[int, Field(ge=1)] = 1
+    pitch_slots: Annotated[int, Field(ge=1)]
+    fast_brush_deg: Annotated[float, Field(gt=0, lt=180)]
+    given: GivenBesideWindings
+
+    @model_validator(mode="after")
+    def _reaches_across(self) -> Self:
+        if 2 * self.pitch_slots > self.coils:
+            raise wrong("pitch_slots", text=f"pitch_slots must be at most half of coils, {self.coils // 2}")
+        return self
+
+
+class AnyReadings(Checked):
+    """One of the three, by its `kind`."""
+
+    readings: Annotated[BenchReadings | DataSheet | Windings, Field(discriminator="kind")]
+
+
+#: What a file of readings holds.
+Readings = BenchReadings | DataSheet | Windings

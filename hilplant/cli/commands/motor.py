@@ -15,13 +15,16 @@ app = command_app()
 
 @app.command(epilog="Example: hilplant motor my_readings.yaml --out my_motor.yaml")
 def motor(
-    readings: Annotated[Path, typer.Argument(help="readings on a bench, or a data sheet, in YAML", metavar="READINGS")],
+    readings: Annotated[
+        Path, typer.Argument(help="readings on a bench, a data sheet, or windings, in YAML", metavar="READINGS")
+    ],
     out: Annotated[Path, typer.Option(help="motor file to write")],
     json_file: JsonFile = None,
 ) -> None:
-    """Make a motor file from readings or a data sheet.
+    """Make a motor file from readings, a data sheet, or windings.
 
-    With the standard error of each parameter; docs/identification.md says what the file of readings holds.
+    Readings give each parameter its standard error; windings are magnets, coils and brushes.
+    docs/identification.md says what the file of readings holds.
     """
     need("identify")
     from hilplant.motor_bench.motor_file import motor_from_readings
@@ -32,5 +35,10 @@ def motor(
     for name, value in found.values.items():
         error = ", given" if name in found.given else f" +- {value.s:.2g}" if value.s else ", without an error"
         typer.echo(f"  {name:22} {value.n:.6g}{error}")
+    if found.windings is not None:
+        counts = found.figures
+        slow, fast = counts["slow_coils_counted"], counts["fast_coils_counted"]
+        typer.echo(f"  both paths together: {slow:.4g} K_t slow, {fast:.4g} K_t fast; between the brushes half of it")
+        typer.echo(f"  fast over slow {fast / slow:.3f}; measured motors have 0.66 to 0.75")
     typer.echo(f"{out} written; put it under `motor` of a bench")
     write_json(json_file, found.figures)
