@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import Field, WithJsonSchema
 
 from hilplant import resources
+from hilplant.arrays import Floats
 from hilplant.bench.description import InitialSection
 from hilplant.bench.durations import Seconds, SomeSeconds
 from hilplant.bench.values import signal_value
@@ -24,6 +25,7 @@ from hilplant.faults.written import FaultEntry, Written
 from hilplant.signals import INPUT_INDEX, INPUTS
 from hilplant.simulation.scenario_schema import EntriesOfInputs
 from hilplant.simulation.scenario_sections import read_expectations, read_stalk
+from hilplant.simulation.stimuli import GENERATORS, Generated, Shape
 from hilplant.units import SECOND_NS
 from hilplant.verdicts.binding import Placed
 
@@ -63,12 +65,16 @@ class _Instant(Checked):
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """From `time_s` on the signal has `value`, or is on its way there for `ramp_s`; `place` is its file and line."""
+    """From `time_s` on the signal has `value`, or is on its way there for `ramp_s`; `place` is its file and line.
+
+    Where there is a `shape` that gives the values, by time from there on.
+    """
 
     time_s: float
     value: float
     ramp_s: float = 0.0
     place: str = field(default="", kw_only=True)
+    shape: Shape | None = field(default=None, kw_only=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,13 +187,34 @@ def _entries_of(reading: Reading, document: Document, signal: Signal, pairs: Seq
         if entries and instant.time <= entries[-1].time_s:
             reading.note(document, location, f"time {instant.time} s must come after {entries[-1].time_s} s")
             continue
-        entries.append(Entry(instant.time, *entry, place="{}:{}".format(*document.place(location))))
+        value, ramp_s, shape = entry
+        place = "{}:{}".format(*document.place(location))
+        entries.append(Entry(instant.time, value, ramp_s, place=place, shape=shape))
     return tuple(entries)
 
 
-def _entry(reading: Reading, document: Document, location: Location, signal: Signal) -> tuple[float, float] | None:
-    """Return the written value and the time over which it is reached."""
+def _generated(reading: Reading, document: Document, location: Location, signal: Signal) -> Shape | None:
+    """Return what a generator makes; a mistake in it is told."""
+    generator = reading.take(document, location, Generated)
+    if generator is None:
+        return None
+    try:
+        if signal.kind != "real":
+            raise Failure(f"{signal.name} is a {signal.kind} and cannot follow a generator; give it a value")
+        return generator.shape(Path(document.place(location)[0]).parent)
+    except Failure as error:
+        reading.note(document, location, str(error))
+        return None
+
+
+def _entry(
+    reading: Reading, document: Document, location: Location, signal: Signal
+) -> tuple[float, float, Shape | None] | None:
+    """Return the written value, the time over which it is reached, or the generator in its place."""
     written, ramp_s = document.at(location), 0.0
+    if isinstance(written, dict) and GENERATORS & set(written):
+        shape = _generated(reading, document, location, signal)
+        return None if shape is None else (0.0, 0.0, shape)
     if isinstance(written, dict):
         ramp = reading.take(document, location, _Ramp)
         if ramp is None:
@@ -199,7 +226,7 @@ def _entry(reading: Reading, document: Document, location: Location, signal: Sig
         value = signal_value(signal, written)
         if ramp_s and _is_no_quantity(signal, value):
             raise ValueError(f"{signal.name} cannot ramp to '{_SAME}'; ramp to a number from 0 on, then say '{_SAME}'")
-        return value, ramp_s
+        return value, ramp_s, None
     except ValueError as error:
         reading.note(document, location, str(error))
         return None
@@ -215,9 +242,23 @@ def _apply(column: NDArray[np.float64], entry: Entry, step_ns: int, signal: Sign
     first, ticks = (round(seconds * SECOND_NS / step_ns) for seconds in (entry.time_s, entry.ramp_s))
     if first >= len(column):
         return
+    if entry.shape is not None:
+        _follow_shape(column[first:], entry.shape, step_ns, (entry.place, signal))
+        return
     if ticks and _is_no_quantity(signal, column[first]):
         text = f"{signal.name} is '{_SAME}' when its ramp at {entry.time_s:g} s begins; give it a value before"
         raise Failure(": ".join(part for part in (entry.place, text) if part))
     ramp = np.linspace(column[first], entry.value, ticks, endpoint=False)[: len(column) - first]
     column[first:] = entry.value
     column[first : first + len(ramp)] = ramp
+
+
+def _follow_shape(column: Floats, shape: Shape, step_ns: int, told: tuple[str, Signal]) -> None:
+    """Write what a generator makes over a column; values out of the signal's range are refused."""
+    values, (place, signal) = shape(np.arange(len(column), dtype=np.float64) * (step_ns / SECOND_NS)), told
+    outside = (values < signal.minimum) | (values > signal.maximum)
+    if outside.any():
+        worst = values[np.argmax(outside)]
+        limits = f"{signal.minimum:g} to {signal.maximum:g} {signal.unit}".rstrip()
+        raise Failure(f"{place}: {signal.name} becomes {worst:g}, which is not within {limits}")
+    column[:] = values

@@ -7,13 +7,15 @@ from hypothesis import strategies as st
 from support.closed_form import ClosedFormWiper
 
 from hilplant.models.armature import ArmatureMotion
-from hilplant.models.circuit import Connection
+from hilplant.models.circuit import Connection, seen_by_armature
 from hilplant.models.load import resist
 from hilplant.models.lookup import find
 from hilplant.models.records import Arm, Blade, Brush, Friction, Load, Motor, Parameters, ParkSwitch
 from hilplant.models.resistance import Crank
 from hilplant.models.shaft import Train, turn
+from hilplant.models.terminals import Shaft
 from hilplant.models.torque_network import NO_TANGENT
+from hilplant.models.wiring import GROUND, NOTHING, SUPPLY, Leads
 from hilplant.signals import Inputs
 
 WIPER = ClosedFormWiper()
@@ -28,7 +30,8 @@ FRICTION = Friction(
 )
 ANGLES, SPEEDS = st.floats(0.0, 2.0 * math.pi, exclude_max=True), st.floats(-300.0, 300.0) | st.floats(-2.0, 2.0)
 FREE = Inputs(0.0, 0.0, 13.5, 0.0, 0.0, 0.0)
-OPEN = Connection(SLOW, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+IDEAL = Motor(SLOW, FAST, 1.983e-5, 0.0, 0.0, RATIO, 1.0, 1.0)
+OPEN = seen_by_armature(Leads(NOTHING, NOTHING, GROUND, NOTHING, 0.0), IDEAL, 0.0, 1.0, Shaft(0.0, 0.0))
 
 
 def train_of(motor: Motor, load: Load, inputs: Inputs, connection: Connection, step_s: float = STEP_S) -> Train:
@@ -50,7 +53,7 @@ def energy(angle: float, motion: ArmatureMotion, motor: Motor) -> float:
 @settings(max_examples=200, deadline=None)
 @given(angle=ANGLES, speed=st.floats(80.0, 300.0), way=st.sampled_from([-1.0, 1.0]))
 def test_without_friction_an_ideal_gear_keeps_the_energy(angle: float, speed: float, way: float) -> None:
-    motor = Motor(SLOW, FAST, 1.983e-5, 0.0, 0.0, RATIO, 1.0, 1.0)
+    motor = IDEAL
     train = train_of(motor, Load(2.0), FREE, OPEN)
     motion, place, before = (
         ArmatureMotion(0.0, way * speed, 0.0),
@@ -77,7 +80,8 @@ def test_no_step_gains_more_energy_than_the_terminals_put_in(
     screen, brake, back = surroundings
     motor = Motor(SLOW, FAST, 1.983e-5, 1.582e-4, 0.02, RATIO, 0.8, back)
     load = Load(2.0, friction=FRICTION, left_blade=Blade(7.615), right_blade=Blade(7.615))
-    connection = Connection(SLOW, volts, 1.0, volts, 0.0, 0.0, 0.0)
+    leads = Leads(SUPPLY, NOTHING, GROUND, NOTHING, 0.0)
+    connection = seen_by_armature(leads, motor, volts, 1.0, Shaft(current, speed))
     train = train_of(motor, load, FREE._replace(screen=screen, brake_torque_n_m=brake), connection)
     start = ArmatureMotion(current, speed, 0.0)
     end = turned(start, angle, train)
