@@ -17,7 +17,7 @@ from hilplant.bench.description import BenchDescription, LoopSettings
 from hilplant.bench.doubts import note_doubts
 from hilplant.bench.ecu_description import EcuSettings
 from hilplant.bench.ecu_messages import EcuMessages, build_ecu_messages
-from hilplant.bench.ecu_side import EcuSide, build_ecu_side
+from hilplant.bench.ecu_side import EcuSide, build_ecu_side, note_one_way
 from hilplant.bench.mapping import MappedMessage
 from hilplant.bench.plant import Plant, build_plant
 from hilplant.bench.source import Source, read_source
@@ -139,6 +139,7 @@ def _built(source: Source, description: BenchDescription | None) -> tuple[Bench 
         bench = build_bench(spot, description, source.path)
         if bench is not None and not spot.findings and not source.reading.problems:
             note_doubts(spot, description, bench.plant)
+            note_one_way(spot.inner("bus"), bench.commands)
         source.reading.keep(source.document, spot.findings)
     problems = source.reading.sorted_problems()
     if bench is None or any(problem.severity == "error" for problem in problems):

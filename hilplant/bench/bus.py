@@ -123,12 +123,11 @@ def _refuse_two_commanders(receive: Spot, messages: Mapping[str, CommandEntry | 
     """Refuse an input of the plant that two messages would write, whatever else is wrong with them."""
     first: dict[str, tuple[str, str]] = {}
     for message, entry in messages.items():
-        for name, written in entry.signals.items() if entry is not None else ():
-            for target in {each.signal for each in written if each is not None} & INPUT_INDEX.keys():
-                other, signal = first.setdefault(target, (message, name))
-                if other != message:
-                    text = f"{target} is already commanded by {other}.{signal}; keep one of the two"
-                    receive.note(message, "signals", name, text=text)
+        for target, keys in entry.targets() if entry is not None else ():
+            other, signal = first.setdefault(target, (message, keys[-1]))
+            if other != message and target in INPUT_INDEX:
+                text = f"{target} is already commanded by {other}.{signal}; keep one of the two"
+                receive.note(message, *keys, text=text)
 
 
 def _refuse_fd_on_classic(bus: Spot, interface: dict[str, Any], messages: list[MappedMessage]) -> None:

@@ -34,6 +34,21 @@ class InterfaceSection(Checked):
     interface: Name = Field(description="name of an interface of python-can, such as socketcan or virtual")
 
 
+def _as_label(written: Any) -> Any:
+    """Return a flag's value as its label, also where it is written as true, false, 0 or 1."""
+    return str(written).lower() if isinstance(written, bool | int) else written
+
+
+class _TextTrueOrNumber:
+    """Lets the schema offer what a label may be written as."""
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        return {"type": ["string", "boolean", "integer"]}
+
+
+PlantLabel = Annotated[str, BeforeValidator(_as_label), _TextTrueOrNumber()]
+
+
 class SignalEntry(Checked):
     """How one signal of the database relates to one of the plant.
 
@@ -43,8 +58,8 @@ class SignalEntry(Checked):
     signal: Name = Field(description="signal of the plant")
     scale: Real = Field(default=1.0, description="factor from the database's value to the plant's; not 0")
     offset: Real = Field(default=0.0, description="what is added after the factor, in the plant's unit")
-    choices: dict[str, str] | None = Field(
-        default=None, description="from labels of the database to those of the plant"
+    choices: dict[str, PlantLabel] | None = Field(
+        default=None, description="from labels of the database, or raw numbers, to labels of the plant"
     )
     invert: bool = Field(default=False, description="whether 0 and 1 of a flag change places")
 
@@ -103,6 +118,57 @@ Published = Annotated[dict[str, Entries[PublishedEntry]], Field(min_length=1)]
 Stalk = Annotated[dict[str, Entries[StalkEntry]], Field(min_length=1)]
 EcuStatus = Annotated[dict[str, Entries[EcuStatusEntry]], Field(min_length=1)]
 
+
+def _listed_values(written: Any) -> Any:
+    """Return the values of a term as a list of texts: raw numbers and labels."""
+    if not isinstance(written, dict):
+        return written
+    return {
+        name: [
+            str(value) if type(value) is int else value for value in (values if isinstance(values, list) else [values])
+        ]
+        for name, values in written.items()
+    }
+
+
+_LABELS = {"type": ["string", "integer"]}
+
+
+class _NameOrValues:
+    """Lets the schema offer a signal's name alone, or with one value or several."""
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        values = {"anyOf": [_LABELS, {"type": "array", "items": _LABELS, "minItems": 1}]}
+        group = {"type": "object", "additionalProperties": values, "minProperties": 1, "maxProperties": 1}
+        return {"anyOf": [{"type": "string"}, group]}
+
+
+Values = Annotated[list[str], Field(min_length=1)]
+Term = Annotated[
+    str | Annotated[dict[str, Values], Field(min_length=1, max_length=1)],
+    BeforeValidator(_listed_values),
+    _NameOrValues(),
+]
+
+
+class ConditionEntry(Checked):
+    """A flag that several signals of the message decide.
+
+    A term is a signal's name, true while its raw value is not 0, or `Signal: values`, true while it has one of these
+    labels or raw numbers.
+    """
+
+    any: list[Term] = Field(default=[], description="on while one of these is true")
+    all: list[Term] = Field(default=[], description="on only while all of these are true")
+
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        if self.any == self.all == []:
+            raise wrong(text="a condition needs any or all: a list of signals")
+        return self
+
+
+_CONDITIONS = "flag of the plant: the signals of the message that decide it"
 _SIGNALS = "signal of the database: what it is to the plant"
 
 
@@ -156,11 +222,28 @@ class ReceivedEntry(Checked):
 
     holes_inside: ClassVar[bool] = True
 
-    signals: dict[str, tuple[SignalEntry, ...]]
+    signals: dict[str, tuple[SignalEntry, ...]] = Field(default={})
+    conditions: dict[str, ConditionEntry] = Field(default={})
     timeout_ms: Milliseconds | None = Field(
         default=None, description="after how long without it its message counts as lost; 0: it may stay away"
     )
     protection: ProtectionSection | None = Field(default=None, description="end-to-end protection of the message")
+
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        if self.signals == {} and self.conditions == {}:
+            raise wrong(text="key 'signals' is missing")
+        return self
+
+    def targets(self) -> list[tuple[str, tuple[str, ...]]]:
+        """Return the signals of the plant that the message sets, each with the keys at which it is written."""
+        lines = [
+            (each.signal, ("signals", name))
+            for name, entries in (self.signals or {}).items()
+            for each in entries or ()
+            if each is not None
+        ]
+        return [*lines, *((name, ("conditions", name)) for name in self.conditions or {})]
 
 
 class SentEntry(Checked):
@@ -178,7 +261,8 @@ class SentEntry(Checked):
 class CommandEntry(ReceivedEntry):
     """A message that commands the plant."""
 
-    signals: Inputs = Field(description=_SIGNALS)  # type: ignore[assignment]
+    signals: Inputs = Field(default={}, description=_SIGNALS)  # type: ignore[assignment]
+    conditions: dict[InputName, ConditionEntry] = Field(default={}, description=_CONDITIONS)
 
 
 class ReportEntry(SentEntry):
@@ -191,7 +275,10 @@ class ReportEntry(SentEntry):
 class StalkMessageEntry(ReceivedEntry):
     """A message from the stalk to the ECU."""
 
-    signals: Stalk = Field(description="signal of the database: signal of the stalk")  # type: ignore[assignment]
+    signals: Stalk = Field(  # type: ignore[assignment]
+        default={}, description="signal of the database: signal of the stalk"
+    )
+    conditions: dict[StalkName, ConditionEntry] = Field(default={}, description=_CONDITIONS)
 
 
 class EcuStatusMessageEntry(SentEntry):

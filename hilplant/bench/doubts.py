@@ -1,8 +1,5 @@
 """What can be built and is yet doubtful: numbers that no wiper has, and settings that take a protection away."""
 
-from collections.abc import Iterable, Iterator
-
-from hilplant.bench.bus_description import SignalEntry
 from hilplant.bench.description import BenchDescription
 from hilplant.bench.parts import MotorFile
 from hilplant.bench.plant import Plant
@@ -62,12 +59,7 @@ def _doubt_safety(spot: Spot, description: BenchDescription) -> None:
     if description.bus.safe.get("relay_on") is True:
         spot.warn("safe", "relay_on", text="relay_on: true keeps the motor running while commands are lost")
     for name, written in description.bus.receive.items():
-        relays = sorted(set(_commanded(written.signals.values())))
+        relays = sorted({name for name, _ in written.targets()} & {*_RELAYS})
         if written.timeout_ms == 0 and relays:
             text = f"{name} commands {' and '.join(relays)} and may stay away for ever; give it a timeout_ms above 0"
             spot.warn("receive", name, "timeout_ms", text=text)
-
-
-def _commanded(signals: Iterable[tuple[SignalEntry, ...]]) -> Iterator[str]:
-    for entries in signals:
-        yield from (entry.signal for entry in entries if entry.signal in _RELAYS)

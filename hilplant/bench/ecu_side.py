@@ -7,8 +7,12 @@ from hilplant.bench.ecu_messages import EcuMessages
 from hilplant.bench.mapping import MappedMessage
 from hilplant.bench.timing import CYCLES_UNTIL_LOST
 from hilplant.bus.codec import MappingError, ReceivedMessage, SentMessage, Timing, received_message, sent_message
+from hilplant.checked_yaml.spot import Spot
 from hilplant.signals import ECU_HEARD, ECU_SAID
 from hilplant.units import MILLISECOND_NS
+
+#: Any period serves where nothing but the mapping is examined.
+ECU_PERIOD_MS = 5.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +43,21 @@ def build_ecu_side(
     Raises
     ------
     MappingError
-        When the command of a relay only works in the plant's direction.
+        When the command of a relay only works in the plant's direction: `note_one_way` has said so.
 
     """
     received = tuple(_received(mapped, period_ns) for mapped, period_ns in reports)
     sent = [_sent(mapped, period_ms) for mapped in commands if _commands_relay(mapped) or _can_be_sent(mapped)]
     return EcuSide(received, tuple(sent), own.stalk, own.status)
+
+
+def note_one_way(spot: Spot, commands: Sequence[MappedMessage]) -> None:
+    """Note as warnings at the bus's spot which commands only work in the plant's direction."""
+    for mapped in commands:
+        try:
+            _sent(mapped, ECU_PERIOD_MS)
+        except MappingError as error:
+            spot.warn("receive", mapped.message.name, text=f"the simulated ECU cannot send it: {error}")
 
 
 def _commands_relay(mapped: MappedMessage) -> bool:

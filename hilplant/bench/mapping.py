@@ -8,7 +8,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hilplant.bench.bus_description import ReceivedEntry, SentEntry, SignalEntry
+from hilplant.bench.bus_description import ConditionEntry, ReceivedEntry, SentEntry, SignalEntry
+from hilplant.bus.codec import Mapped
+from hilplant.bus.flag_conditions import ConditionTerm, FlagCondition, link_condition
 from hilplant.bus.mapping import MappingError, SignalMapping, link
 from hilplant.bus.protection import Protection, ProtectionError
 from hilplant.checked_yaml.problems import suggestion
@@ -21,7 +23,7 @@ class MappedMessage:
     """A message, its mapped signals and its protection."""
 
     message: Any
-    mappings: tuple[SignalMapping, ...]
+    mappings: tuple[Mapped, ...]
     protection: Protection | None
 
 
@@ -29,9 +31,11 @@ def map_message(
     spot: Spot, message: Any, entry: ReceivedEntry | SentEntry, signals: Sequence[Signal]
 ) -> MappedMessage | None:
     """Look up and check every mapped signal; None when any of them cannot work."""
-    mappings = [
+    mappings: list[Mapped | None] = [
         _mapping(spot, message, (name, written), signals) for name, each in entry.signals.items() for written in each
     ]
+    if isinstance(entry, ReceivedEntry):
+        mappings += [_condition(spot, message, named, signals) for named in entry.conditions.items()]
     sound = tuple(mapping for mapping in mappings if mapping is not None)
     try:
         settings = entry.protection.settings() if entry.protection is not None else None
@@ -46,7 +50,7 @@ def _mapping(
     spot: Spot, message: Any, named: tuple[str, SignalEntry | None], signals: Sequence[Signal]
 ) -> SignalMapping | None:
     name, entry = named
-    if entry is None or not _known(spot, message, (name, entry.signal), signals):
+    if entry is None or not _known(spot.inner("signals"), message, (name, name, entry.signal), signals):
         return None
     mapping = SignalMapping(name, entry.signal, entry.scale, entry.offset, entry.choices, entry.invert)
     try:
@@ -57,18 +61,45 @@ def _mapping(
     return mapping
 
 
-def _known(spot: Spot, message: Any, ends: tuple[str, str], signals: Sequence[Signal]) -> bool:
-    """Say whether both ends of a mapping exist; note what was probably meant where one does not."""
-    name, plant_name = ends
+def _condition(
+    spot: Spot, message: Any, named: tuple[str, ConditionEntry | None], signals: Sequence[Signal]
+) -> FlagCondition | None:
+    name, entry = named
+    if entry is None:
+        return None
+    terms = [*entry.any, *entry.all]
+    inner = spot.inner("conditions")
+    if not all(_known(inner, message, (name, each, name), signals) for each in map(_signal_of, terms)):
+        return None
+    condition = FlagCondition(name, tuple(map(_term, entry.any)), tuple(map(_term, entry.all)))
+    try:
+        link_condition(message, condition, signals)
+    except MappingError as error:
+        inner.note(name, text=f"{message.name}.{error.signal or name}: {error.text}")
+        return None
+    return condition
+
+
+def _signal_of(term: str | dict[str, list[str]]) -> str:
+    return term if isinstance(term, str) else next(iter(term))
+
+
+def _term(term: str | dict[str, list[str]]) -> ConditionTerm:
+    return ConditionTerm(term) if isinstance(term, str) else ConditionTerm(_signal_of(term), tuple(*term.values()))
+
+
+def _known(spot: Spot, message: Any, ends: tuple[str, str, str], signals: Sequence[Signal]) -> bool:
+    """Say whether both ends of a mapping exist; note at its key what was probably meant where one does not."""
+    key, name, plant_name = ends
     in_database = [signal.name for signal in message.signals]
     in_plant = [signal.name for signal in signals]
     if name not in in_database:
-        spot.note("signals", name, text=f"{message.name} has no signal '{name}'{suggestion(name, in_database)}")
+        spot.note(key, text=f"{message.name} has no signal '{name}'{suggestion(name, in_database)}")
     elif in_database.count(name) > 1:
-        spot.note("signals", name, text=f"{message.name} has {in_database.count(name)} signals '{name}'; keep one")
+        spot.note(key, text=f"{message.name} has {in_database.count(name)} signals '{name}'; keep one")
     elif plant_name not in in_plant:
         text = f"the plant has no signal '{plant_name}' here{suggestion(plant_name, in_plant)}"
-        spot.note("signals", name, text=text)
+        spot.note(key, text=text)
     else:
         return True
     return False

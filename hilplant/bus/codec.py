@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING
 from hilplant.bus.bits import places
 from hilplant.bus.decoding import Decode, decoder
 from hilplant.bus.encoding import Encode, encoder
+from hilplant.bus.flag_conditions import FlagCondition, LinkedCondition, link_condition
 from hilplant.bus.frame_layout import base_payload, check_message, check_overlap, selectors_of
-from hilplant.bus.mapping import Link, MappingError, SignalMapping, link
+from hilplant.bus.joint_code import Linked, databases_of, split_joint
+from hilplant.bus.mapping import MappingError, SignalMapping, link
 from hilplant.bus.protection import Protection
 from hilplant.units import MILLISECOND_NS
 
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
     from hilplant.declaration import Signal
 
 __all__ = [
+    "FlagCondition",
+    "Mapped",
     "MappingError",
     "ReceivedMessage",
     "SentMessage",
@@ -32,6 +36,9 @@ __all__ = [
     "received_message",
     "sent_message",
 ]
+
+#: A line of a mapping: one signal for one, or several for a flag.
+Mapped = SignalMapping | FlagCondition
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +101,7 @@ class Timing:
 
 def received_message(
     message: Message,
-    mappings: Sequence[SignalMapping],
+    mappings: Sequence[Mapped],
     signals: Sequence[Signal],
     timeout_ns: int = 0,
     protection: Protection | None = None,
@@ -110,9 +117,10 @@ def received_message(
 
     """
     links = _links(message, mappings, signals)
-    _refuse_twice(message, links, [made.plant.name for made in links])
-    selectors = selectors_of(message, links)
-    check_overlap(message, [*selectors.values(), *(made.database for made in links)], protection)
+    _refuse_twice(message, links)
+    read = [signal for made in links for signal in databases_of(made)]
+    selectors = selectors_of(message, read)
+    check_overlap(message, [*selectors.values(), *read], protection)
     return ReceivedMessage(
         message.name,
         message.frame_id,
@@ -130,7 +138,7 @@ def received_message(
 
 def sent_message(
     message: Message,
-    mappings: Sequence[SignalMapping],
+    mappings: Sequence[Mapped],
     signals: Sequence[Signal],
     timing: Timing | None = None,
     protection: Protection | None = None,
@@ -145,19 +153,19 @@ def sent_message(
     """
     timing = timing or Timing()
     links = _links(message, mappings, signals)
-    _refuse_twice(message, links, [made.database.name for made in links])
-    for made in links:
-        if made.database.multiplexer_signal is not None or made.database.is_multiplexer:
+    written = [signal for made in links for signal in databases_of(made)]
+    for signal in written:
+        if signal.multiplexer_signal is not None or signal.is_multiplexer:
             text = "multiplexed signals can be received only; send it in a message of its own"
-            raise MappingError(message.name, made.database.name, text)
-    check_overlap(message, [made.database for made in links], protection)
+            raise MappingError(message.name, signal.name, text)
+    check_overlap(message, written, protection)
     return SentMessage(
         message.name,
         message.frame_id,
         message.is_extended_frame,
         message.is_fd,
         message.length,
-        encoder(links, base_payload(message, {place for made in links for place in places(made.database)})),
+        encoder(*split_joint(message, links), base_payload(message, {at for each in written for at in places(each)})),
         tuple(made.index for made in links),
         _period_ns(message, timing),
         timing.offset_ns,
@@ -166,22 +174,29 @@ def sent_message(
     )
 
 
-def _links(message: Message, mappings: Sequence[SignalMapping], signals: Sequence[Signal]) -> list[Link]:
+def _links(message: Message, mappings: Sequence[Mapped], signals: Sequence[Signal]) -> list[Linked]:
     check_message(message)
     if not mappings:
         raise MappingError(message.name, None, "no signal is mapped; map one, or leave the message out")
-    return [link(message, mapping, signals) for mapping in mappings]
+    return [
+        link(message, mapping, signals)
+        if isinstance(mapping, SignalMapping)
+        else link_condition(message, mapping, signals)
+        for mapping in mappings
+    ]
 
 
-def _refuse_twice(message: Message, links: Sequence[Link], targets: Sequence[str]) -> None:
-    """Refuse a target, in the plant or in the frame, that two mappings write."""
+def _refuse_twice(message: Message, links: Sequence[Linked]) -> None:
+    """Refuse a signal of the plant that two mappings write."""
+    targets = [made.plant.name for made in links]
     for position, (made, target) in enumerate(zip(links, targets, strict=True)):
         if target in targets[:position]:
-            raise MappingError(message.name, made.database.name, f"{target} is written by two mappings; keep one")
+            name = databases_of(made)[0].name
+            raise MappingError(message.name, name, f"{target} is written by two mappings; keep one")
 
 
-def _limits(made: Link) -> tuple[float, float]:
-    if made.table is not None:
+def _limits(made: Linked) -> tuple[float, float]:
+    if isinstance(made, LinkedCondition) or made.table is not None:
         return made.plant.minimum, made.plant.maximum
     slack = 0.0 if made.database.is_float else abs(made.database.scale * made.scale) / 2.0
     lowest, highest = made.bounds

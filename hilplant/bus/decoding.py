@@ -10,6 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from hilplant.bus.bits import is_whole_bytes, letter, places, struct_format
+from hilplant.bus.flag_conditions import LinkedCondition
+from hilplant.bus.joint_code import Linked, databases_of
 from hilplant.bus.mapping import NO_CHOICE, Link
 
 if TYPE_CHECKING:
@@ -31,13 +33,13 @@ class _Source:
         return name
 
 
-def decoder(links: Sequence[Link], selectors: Mapping[str, DatabaseSignal], length: int) -> Decode:
+def decoder(links: Sequence[Linked], selectors: Mapping[str, DatabaseSignal], length: int) -> Decode:
     """Return a function from a payload of `length` bytes to the plant's values, in the order of `links`.
 
     `selectors` are the multiplexers by name; a value whose page is not in the frame is None.
     """
     source = _Source()
-    read = {link.database.name: link.database for link in links} | dict(selectors)
+    read = {signal.name: signal for link in links for signal in databases_of(link)} | dict(selectors)
     raws = _raws(source, list(read.values()), length)
     values = ", ".join(_value(source, link, raws, selectors) for link in links)
     text = "\n    ".join(["def decode(data):", *source.lines, f"return ({values},)"])
@@ -85,11 +87,24 @@ def _extract(source: _Source, signal: DatabaseSignal) -> str:
     return f"({bits} ^ {half}) - {half}" if signal.is_signed else bits
 
 
-def _value(source: _Source, link: Link, raws: Mapping[str, str], selectors: Mapping[str, DatabaseSignal]) -> str:
-    raw = raws[link.database.name]
-    value = f"{source.refer(link.table)}.get({raw}, {NO_CHOICE})" if link.table else _scaled(link, raw)
-    conditions = _conditions(link.database, raws, selectors)
-    return f"({value} if {' and '.join(conditions)} else None)" if conditions else value
+def _value(source: _Source, link: Linked, raws: Mapping[str, str], selectors: Mapping[str, DatabaseSignal]) -> str:
+    if isinstance(link, LinkedCondition):
+        value = _decided(source, link, raws)
+    else:
+        raw = raws[link.database.name]
+        value = f"{source.refer(link.table)}.get({raw}, {NO_CHOICE})" if link.table else _scaled(link, raw)
+    pages = [page for signal in databases_of(link) for page in _conditions(signal, raws, selectors)]
+    return f"({value} if {' and '.join(dict.fromkeys(pages))} else None)" if pages else value
+
+
+def _decided(source: _Source, link: LinkedCondition, raws: Mapping[str, str]) -> str:
+    """Return the expression of a flag that several signals decide."""
+    some, every = (
+        [f"{raws[t.database.name]} {'in' if t.inside else 'not in'} {source.refer(t.raws)}" for t in terms]
+        for terms in (link.any, link.all)
+    )
+    needed = [f"({' or '.join(some)})"] if some else []
+    return f"(1.0 if {' and '.join([*needed, *every])} else 0.0)"
 
 
 def _scaled(link: Link, raw: str) -> str:

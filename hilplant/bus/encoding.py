@@ -9,39 +9,52 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hilplant.bus.bits import is_whole_bytes, letter, places, raw_range, struct_format
+from hilplant.bus.joint_code import JointCode
 from hilplant.bus.mapping import Link
+
+if TYPE_CHECKING:
+    from cantools.database.can.signal import Signal as DatabaseSignal
 
 Encode = Callable[[Sequence[float]], tuple[bytes, int]]
 
 
-def encoder(links: Sequence[Link], base: bytes) -> Encode:
+def encoder(links: Sequence[Link], codes: Sequence[JointCode], base: bytes) -> Encode:
     """Return a function from all values to a payload and the number of values that had to be limited.
 
-    `base` is the payload with everything that is not mapped; the bits of mapped signals are 0 in it.
+    `links` stand alone, `codes` are signals that are encoded together. `base` is the payload with everything that is
+    not mapped; the bits of mapped signals are 0 in it.
     """
     names: dict[str, Any] = {"from_bytes": int.from_bytes}
-    fields = [f"r{index}" for index in range(len(links))]
-    raws = [_raw(names, f, link) for f, link in zip(fields, links, strict=True)]
-    inside = " and ".join(_inside(f, link) for f, link in zip(fields, links, strict=True))
-    names["limited"] = _limited(names, links, raws)
+    signals = [link.database for link in links] + [signal for code in codes for signal in code.signals]
+    fields = [f"r{index}" for index in range(len(signals))]
+    raws = [_raw(names, f, link) for f, link in zip(fields, links, strict=False)]
+    joint = [_joint(names, number, code) for number, code in enumerate(codes)]
+    inside = " and ".join([*(_inside(f, link) for f, link in zip(fields, links, strict=False)), "True"])
+    names["limited"] = _limited(names, links, raws, codes)
     text = f"""
 def encode(values):
     limits = 0
     try:
-        {"; ".join(f"{field} = {raw}" for field, raw in zip(fields, raws, strict=True))}
+        {"".join(f"{field}, " for field in fields)} = {"".join(f"{raw}, " for raw in [*raws, *joint])}
         inside = {inside}
     except (ValueError, OverflowError, KeyError):
         inside = False
     if not inside:
         ({"".join(f"{field}, " for field in fields)}), limits = limited(values)
-    return {_payload(names, links, fields, base)}, limits
+    return {_payload(names, signals, fields, base)}, limits
 """
     exec(compile(text, "<encode>", "exec"), names)
     encode: Encode = names["encode"]
     return encode
+
+
+def _joint(names: dict[str, Any], number: int, code: JointCode) -> str:
+    """Return the expression of the raw values of signals that are encoded together."""
+    names[f"joint_{number}"] = code.table
+    return f"*joint_{number}[{''.join(f'values[{index}], ' for index in code.indices)}]"
 
 
 def _raw(names: dict[str, Any], field: str, link: Link) -> str:
@@ -75,14 +88,21 @@ def _inside(field: str, link: Link) -> str:
     return f"{lowest!r} <= {field} <= {highest!r}"
 
 
-def _limited(names: dict[str, Any], links: Sequence[Link], raws: Sequence[str]) -> Callable[..., Any]:
+def _limited(
+    names: dict[str, Any], links: Sequence[Link], raws: Sequence[str], codes: Sequence[JointCode]
+) -> Callable[..., Any]:
     """Return the slow way to all raw values, for the rare case that one of them does not fit."""
     raw_of = [eval(f"lambda values: {raw}", names) for raw in raws]
     limits = [_limit(link) for link in links]
 
     def limited(values: Sequence[float]) -> tuple[list[float], int]:
         results = [limit(raw, values) for limit, raw in zip(limits, raw_of, strict=True)]
-        return [raw for raw, _ in results], sum([count for _, count in results])
+        found, count = [raw for raw, _ in results], sum([count for _, count in results])
+        for code in codes:
+            wanted = tuple([values[index] for index in code.indices])
+            count += wanted not in code.table
+            found += code.table.get(wanted) or code.nearest(wanted)
+        return found, count
 
     return limited
 
@@ -113,15 +133,16 @@ def _limit(link: Link) -> Callable[..., tuple[float, int]]:
     return limit
 
 
-def _payload(names: dict[str, Any], links: Sequence[Link], fields: Sequence[str], base: bytes) -> str:
+def _payload(names: dict[str, Any], signals: Sequence[DatabaseSignal], fields: Sequence[str], base: bytes) -> str:
     """Return the expression that puts raw values into a payload: one call of struct where it serves."""
-    orders = {link.database.byte_order for link in links}
-    if len(orders) == 1 and not any(base) and all(is_whole_bytes(link.database) for link in links):
-        pairs = sorted(zip(links, fields, strict=True), key=lambda pair: min(places(pair[0].database)))
-        names["pack"] = struct.Struct(struct_format([link.database for link, _ in pairs], len(base))).pack
+    orders = {signal.byte_order for signal in signals}
+    pairs = list(zip(signals, fields, strict=True))
+    if len(orders) == 1 and not any(base) and all(is_whole_bytes(signal) for signal in signals):
+        pairs.sort(key=lambda pair: min(places(pair[0])))
+        names["pack"] = struct.Struct(struct_format([signal for signal, _ in pairs], len(base))).pack
         return f"pack({', '.join(field for _, field in pairs)})"
-    little = [_placed(names, f, link, len(base)) for f, link in zip(fields, links, strict=True) if _is_little(link)]
-    big = [_placed(names, f, link, len(base)) for f, link in zip(fields, links, strict=True) if not _is_little(link)]
+    little = [_placed(names, f, signal, len(base)) for signal, f in pairs if _is_little(signal)]
+    big = [_placed(names, f, signal, len(base)) for signal, f in pairs if not _is_little(signal)]
     if not big:
         return f"({_union(little, base, 'little')}).to_bytes({len(base)}, 'little')"
     whole = _union(big, base, "big")
@@ -130,8 +151,8 @@ def _payload(names: dict[str, Any], links: Sequence[Link], fields: Sequence[str]
     return f"({whole}).to_bytes({len(base)}, 'big')"
 
 
-def _is_little(link: Link) -> bool:
-    return link.database.byte_order == "little_endian"
+def _is_little(signal: DatabaseSignal) -> bool:
+    return signal.byte_order == "little_endian"
 
 
 def _union(parts: Sequence[str], base: bytes, order: str) -> str:
@@ -139,11 +160,10 @@ def _union(parts: Sequence[str], base: bytes, order: str) -> str:
     return " | ".join([*parts, *([str(constant)] if constant else [])])
 
 
-def _placed(names: dict[str, Any], field: str, link: Link, length: int) -> str:
+def _placed(names: dict[str, Any], field: str, signal: DatabaseSignal, length: int) -> str:
     """Return the expression of a raw value's bits at their place in the payload, seen as one whole number."""
-    signal = link.database
     lowest = places(signal)[0]
-    shift = lowest if _is_little(link) else 8 * (length - 1 - lowest // 8) + lowest % 8
+    shift = lowest if _is_little(signal) else 8 * (length - 1 - lowest // 8) + lowest % 8
     bits = field
     if signal.is_float:
         names[f"pack_{field}"] = struct.Struct(f"<{letter(signal)}").pack

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hilplant.bus.bits import letter, places
-from hilplant.bus.mapping import Link, MappingError
+from hilplant.bus.mapping import MappingError
 from hilplant.bus.protection import Protection
 
 if TYPE_CHECKING:
@@ -30,15 +30,15 @@ def check_message(message: Message) -> None:
         raise MappingError(message.name, None, text)
 
 
-def selectors_of(message: Message, links: Sequence[Link]) -> dict[str, DatabaseSignal]:
-    """Return by name the multiplexers that decide whether the linked signals are in a frame."""
+def selectors_of(message: Message, read: Sequence[DatabaseSignal]) -> dict[str, DatabaseSignal]:
+    """Return by name the multiplexers that decide whether signals that are read are in a frame."""
     by_name = {signal.name: signal for signal in message.signals}
     found: dict[str, DatabaseSignal] = {}
-    for made in links:
-        name = made.database.multiplexer_signal
+    for signal in read:
+        name = signal.multiplexer_signal
         while name is not None:
             if name not in by_name:
-                raise MappingError(message.name, made.database.name, f"its multiplexer {name} is not in the database")
+                raise MappingError(message.name, signal.name, f"its multiplexer {name} is not in the database")
             found[name] = by_name[name]
             name = by_name[name].multiplexer_signal
     return found

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from hilplant.bus.bits import letter, raw_range
+from hilplant.bus.bits import letter, raw_range, type_range
 from hilplant.failure import Failure
 
 if TYPE_CHECKING:
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 
 #: Names of a flag's two values that a choice may be mapped to.
 FLAG_LABELS = {"off": 0.0, "false": 0.0, "0": 0.0, "on": 1.0, "true": 1.0, "1": 1.0}
+
+#: A raw value as text.
+_WHOLE = re.compile(r"-?[0-9]{1,20}")
 
 #: What a raw value that no choice stands for becomes: below the range of every signal that choices may lead to.
 NO_CHOICE = -2.0
@@ -37,8 +41,8 @@ class MappingError(Failure):
 class SignalMapping:
     """One line of a mapping: plant value = database's physical value * scale + offset, in both directions.
 
-    `choices` leads from the labels of the database's value table to those of the plant's choice (of a flag:
-    off, on; of a number that has names: those). `invert` swaps 0 and 1 of a flag.
+    `choices` leads from the labels of the database's value table, or raw numbers, to those of the plant's choice (of a
+    flag: off, on; of a number that has names: those). `invert` swaps 0 and 1 of a flag.
     """
 
     database_signal: str
@@ -76,18 +80,11 @@ def link(message: Message, mapping: SignalMapping, signals: Sequence[Signal]) ->
         When an end is unknown, or choices, kind or range do not fit.
 
     """
-    database = _database_signal(message, mapping.database_signal)
-    index = next((i for i, signal in enumerate(signals) if signal.name == mapping.plant_signal), None)
-    if index is None:
-        known = ", ".join(signal.name for signal in signals)
-        raise MappingError(
-            message.name,
-            database.name,
-            f"the plant has no signal '{mapping.plant_signal}' here; it has {known}",
-        )
+    database = database_signal(message, mapping.database_signal)
+    index = plant_index(message, mapping.plant_signal, database.name, signals)
     plant = signals[index]
     try:
-        _check_database(database)
+        check_database(database)
         scale, offset = _line(mapping, plant)
         table = _table(database, plant, mapping)
         bounds = _table_bounds(table) if table else _line_bounds(database, scale, offset)
@@ -98,7 +95,17 @@ def link(message: Message, mapping: SignalMapping, signals: Sequence[Signal]) ->
     return made
 
 
-def _database_signal(message: Message, name: str) -> DatabaseSignal:
+def plant_index(message: Message, name: str, database_name: str | None, signals: Sequence[Signal]) -> int:
+    """Return the index of one of the plant's signals."""
+    for index, signal in enumerate(signals):
+        if signal.name == name:
+            return index
+    known = ", ".join(signal.name for signal in signals)
+    raise MappingError(message.name, database_name, f"the plant has no signal '{name}' here; it has {known}")
+
+
+def database_signal(message: Message, name: str) -> DatabaseSignal:
+    """Return a signal of the message."""
     for signal in message.signals:
         if signal.name == name:
             return signal
@@ -106,7 +113,7 @@ def _database_signal(message: Message, name: str) -> DatabaseSignal:
     raise MappingError(message.name, name, f"the message has no such signal; it has {known or 'none'}")
 
 
-def _check_database(database: DatabaseSignal) -> None:
+def check_database(database: DatabaseSignal) -> None:
     """Refuse a signal that the database describes in a way that no value can pass through."""
     stated = (database.scale, database.offset, database.minimum or 0.0, database.maximum or 0.0)
     if not all(math.isfinite(number) for number in stated):
@@ -141,9 +148,9 @@ def _table(database: DatabaseSignal, plant: Signal, mapping: SignalMapping) -> d
     if database.is_float:
         raise ValueError("a float cannot carry choices")
     values = _plant_values(plant)
-    table = {_raw(labels, label): _value(values, plant, name) for label, name in chosen.items()}
+    table = {raw_number(database, label): _value(values, plant, name) for label, name in chosen.items()}
     if missing := [name for name in plant.choices if float(plant.choices.index(name)) not in table.values()]:
-        has = ", ".join(labels)
+        has = ", ".join(labels) or "its values"
         raise ValueError(f"choices must say which of {has} stands for {', '.join(missing)} of {plant.name}")
     return {raw: 1.0 - value for raw, value in table.items()} if mapping.invert else table
 
@@ -173,11 +180,23 @@ def _plant_values(plant: Signal) -> dict[str, float]:
     raise ValueError(f"choices are for a flag, a choice or a number with names, and {plant.name} is a {plant.kind}")
 
 
-def _raw(labels: dict[str, int], label: str) -> int:
-    if label not in labels:
-        has = ", ".join(labels) or "no value table"
+def raw_number(database: DatabaseSignal, label: str) -> int:
+    """Return the raw value that a label of the signal's value table, or a number, stands for."""
+    labels = {str(text): int(raw) for raw, text in (database.choices or {}).items()}
+    number = int(label) if _WHOLE.fullmatch(label) else None
+    if label in labels:
+        if number is not None and number != labels[label]:
+            raise ValueError(
+                f"'{label}' is the label of {labels[label]}, and a number too; it cannot be told which is meant"
+            )
+        return labels[label]
+    if number is None:
+        has = ", ".join(labels) or "no value table; name the raw numbers"
         raise ValueError(f"its value table has no '{label}'; it has {has}")
-    return labels[label]
+    lowest, highest = type_range(database)
+    if not lowest <= number <= highest:
+        raise ValueError(f"it has {database.length} bits for {lowest:g} to {highest:g}, so never {number}")
+    return number
 
 
 def _value(values: dict[str, float], plant: Signal, name: str) -> float:
@@ -203,7 +222,7 @@ def _check_kind(made: Link) -> None:
     if plant.kind in ("flag", "choice"):
         if not _is_whole(made):
             raise ValueError(f"{plant.name} is a {plant.kind}, so whole numbers must arrive; give choices or a scale")
-        if missing := [value for value in range(int(low), int(high) + 1) if not _can_carry(made, value)]:
+        if missing := [value for value in range(int(low), int(high) + 1) if not can_carry(made, value)]:
             text = ", ".join(str(value) for value in missing)
             raise ValueError(f"it cannot carry {text} of {plant.name}, which takes all of {low:g} to {high:g}")
     elif lowest > high or highest < low:
@@ -220,9 +239,15 @@ def _is_whole(made: Link) -> bool:
     return made.table is not None or (not made.database.is_float and all(float(step).is_integer() for step in steps))
 
 
-def _can_carry(made: Link, value: float) -> bool:
+def can_carry(made: Link, value: float) -> bool:
+    """Say whether a raw value stands for this value of the plant."""
     if made.table is not None:
         return value in made.table.values()
     raw = ((value - made.offset) / made.scale - made.database.offset) / made.database.scale
     lowest, highest = raw_range(made.database)
     return raw.is_integer() and lowest <= raw <= highest
+
+
+def raw_of(made: Link, value: float) -> int:
+    """Return the raw value that stands for a value of the plant, where no table decides."""
+    return int(((value - made.offset) / made.scale - made.database.offset) / made.database.scale)

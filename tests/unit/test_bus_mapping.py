@@ -79,7 +79,12 @@ def test_a_wrong_mapping_of_a_received_message_is_refused(
     ("message", "mappings", "timing", "words"),
     [
         ("ParkSwitch", [Map("ParkContact", "mode")], Timing(), "which of Closed, Open stands for waiting"),
-        ("ParkSwitch", [Map("ParkContact", "guard"), Map("ParkContact", "park_contact")], Timing(), "two mappings"),
+        (
+            "ParkSwitch",
+            [Map("ParkContact", "guard"), Map("ParkContact", "park_contact")],
+            Timing(),
+            "no values of ParkContact say guard off and park_contact on, so it cannot be sent",
+        ),
         ("ParkSwitch", [Map("ParkContact", "park_contact")], Timing(on_change=("park",)), "on_change names 'park'"),
     ],
 )
