@@ -13,7 +13,7 @@ from typing import Any, Self
 from hilplant.bus.e2e_profiles import PROFILES, Profile
 from hilplant.bus.e2e_state import FrameCheck, ProtectionError, StateMachine, StateMachineSettings, Trust
 
-__all__ = ["Checker", "FrameCheck", "Protection", "ProtectionError", "Protector"]
+__all__ = ["Checker", "Forger", "FrameCheck", "Protection", "ProtectionError", "Protector"]
 
 _DATA_IDS_OF_2 = 16
 _BYTE_MAX = 255
@@ -135,6 +135,12 @@ class _Header:
         """Return the counter in a frame."""
         return int.from_bytes(data[self.first : self.last], "big") & self.mask
 
+    def sign(self, data: bytearray, counter: int) -> None:
+        """Write a counter, and the checksum that is right for it, in place."""
+        whole = int.from_bytes(data[self.first : self.last], "big") & ~self.mask | counter
+        data[self.first : self.last] = whole.to_bytes(self.last - self.first, "big")
+        self.profile.protect(data, self.identity, **self.keywords, increment_counter=False)
+
 
 class Checker:
     """Judges received frames of one message.
@@ -188,8 +194,31 @@ class Protector:
 
     def protect(self, data: bytearray) -> None:
         """Write counter and checksum into a frame, in place."""
-        header = self._header
-        whole = int.from_bytes(data[header.first : header.last], "big") & ~header.mask | self._counter
-        data[header.first : header.last] = whole.to_bytes(header.last - header.first, "big")
-        header.profile.protect(data, header.identity, **header.keywords, increment_counter=False)
-        self._counter = (self._counter + 1) % header.profile.modulus
+        self._header.sign(data, self._counter)
+        self._counter = (self._counter + 1) % self._header.profile.modulus
+
+
+class Forger:
+    """Rewrites the counter and the checksum of one message's frames, for faults of the bus."""
+
+    def __init__(self, protection: Protection) -> None:
+        self._header = _Header(protection)
+        counter = range(8 * (self._header.last - 1), 8 * self._header.last)
+        self._checked = max(protection.reserved_places() - frozenset(counter))
+        self.modulus = self._header.profile.modulus
+
+    def counter(self, data: bytes) -> int:
+        """Return the counter in a frame."""
+        return self._header.counter(data)
+
+    def signed(self, data: bytes, counter: int) -> bytes:
+        """Return a frame with this counter, and the checksum that is right for it."""
+        changed = bytearray(data)
+        self._header.sign(changed, counter % self.modulus)
+        return bytes(changed)
+
+    def corrupted(self, data: bytes) -> bytes:
+        """Return a frame with one bit of its header turned over, not of its counter: no receiver may take it."""
+        changed = bytearray(data)
+        changed[self._checked // 8] ^= 1 << self._checked % 8
+        return bytes(changed)

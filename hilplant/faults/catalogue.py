@@ -4,6 +4,7 @@ import math
 
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.failure import Failure
+from hilplant.faults.bus_catalogue import BUS_FAULTS
 from hilplant.faults.fault import Change, FaultDefinition, Quantity, Way
 
 #: The motor's terminals by DIN 72552, and what hangs on each.
@@ -87,7 +88,7 @@ _BY_TURNS = (("resistance_ohm", 1), ("constant_v_s", 1), ("inductance_henry", 2)
 _SHARE = Quantity("share", 0.0, 0.9, "part of the turns that is shorted")
 _FACTOR = Quantity("factor", 0.0, 10.0, "what is left, as a factor")
 
-#: Every fault, by kind.
+#: Every fault of the plant, by kind.
 FAULTS: tuple[FaultDefinition, ...] = (
     *(fault for terminal, what in TERMINALS.items() for fault in _at_terminal(terminal, what)),
     FaultDefinition("short_53_to_53b", "electrical", "the two brushes' wires touch",
@@ -149,7 +150,8 @@ FAULTS: tuple[FaultDefinition, ...] = (
     ),
 )  # fmt: skip
 
-BY_NAME = {fault.name: fault for fault in FAULTS}
+#: All faults: those of the plant, and those of the bus.
+BY_NAME = {fault.name: fault for fault in (*FAULTS, *BUS_FAULTS)}
 
 
 def fault_named(name: str) -> FaultDefinition:

@@ -2,15 +2,15 @@
 
 from itertools import groupby
 
-from hilplant.faults.catalogue import FAULTS, fault_named
-from hilplant.faults.fault import Quantity
+from hilplant.faults.catalogue import BY_NAME, fault_named
+from hilplant.faults.fault import ABOUT, FaultDefinition, Quantity
 
 
 def list_lines() -> list[str]:
     """Return every fault by kind, a line each."""
-    width = max(len(fault.name) for fault in FAULTS)
+    width = max(map(len, BY_NAME))
     lines: list[str] = []
-    for kind, faults in groupby(FAULTS, lambda fault: fault.kind):
+    for kind, faults in groupby(BY_NAME.values(), lambda fault: fault.kind):
         lines += ["", f"{kind}:", *(f"  {fault.name:{width}}  {fault.meaning}" for fault in faults)]
     return lines[1:]
 
@@ -30,20 +30,37 @@ def fault_lines(name: str) -> list[str]:
     return [
         f"{fault.name} ({fault.kind}): {fault.meaning}",
         f"effect: {fault.effect}",
-        *(f"  {_told(quantity)}" for quantity in fault.quantities),
+        *(f"  {told}" for told in _takes(fault)),
         "in a scenario:",
         "  faults:",
-        f"    - {{fault: {fault.name}{given}, at: 2.0, for: 1.0}}",
+        f"    - {{fault: {fault.name}{given}{_example_about(fault)}, at: 2.0, for: 1.0}}",
     ]
 
 
 def table() -> str:
     """Return the catalogue as a table in Markdown."""
     rows = ["| fault | kind | meaning | quantities | effect |", "|---|---|---|---|---|"]
-    for fault in FAULTS:
-        quantities = "; ".join(_told(quantity) for quantity in fault.quantities)
+    for fault in BY_NAME.values():
+        quantities = "; ".join(_takes(fault))
         rows.append(f"| `{fault.name}` | {fault.kind} | {fault.meaning} | {quantities} | {fault.effect} |")
     return "\n".join(rows) + "\n"
+
+
+def _takes(fault: FaultDefinition) -> list[str]:
+    """Return what it is told by quantities and, of the bus, what it is about."""
+    told = [_told(quantity) for quantity in fault.quantities]
+    if fault.on_frames is None:
+        return told
+    if "protection" in fault.about:
+        return [*told, "message: one with end-to-end protection"]
+    return [*told, *(f"{name}: {ABOUT[name]}" for name in fault.about)] if fault.about else [*told, "message or direction"]
+
+
+def _example_about(fault: FaultDefinition) -> str:
+    if fault.on_frames is None:
+        return ""
+    given = {"message": "RelayCommand", "signal": "RelayOn", "value": "1", "direction": "to plant"}
+    return "".join(f", {name}: {given[name]}" for name in fault.about or ("message",) if name in given)
 
 
 def _told(quantity: Quantity) -> str:

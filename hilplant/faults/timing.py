@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from random import Random
 
-from hilplant.faults.fault import FaultDefinition
+from hilplant.faults.fault import About, FaultDefinition
 from hilplant.verdicts.expectations import Condition
 from hilplant.verdicts.ticks import margin
 
@@ -31,6 +31,7 @@ class Inserted:
     ramp: int = 0
     pause: int = 0
     place: str = field(default="", compare=False)
+    about: About = About()
 
 
 class Course:

@@ -1,13 +1,14 @@
 """The `faults` section of a scenario: what is inserted, when, and for how long."""
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from hilplant.checked_yaml.checked import Checked, NotNegative, Positive, wrong
 from hilplant.failure import Failure
 from hilplant.faults.catalogue import fault_named
+from hilplant.faults.fault import About
 from hilplant.faults.timing import Inserted
 from hilplant.signals import INPUTS, OUTPUTS
 from hilplant.verdicts.binding import Known, KnownSignal, condition_of
@@ -39,6 +40,12 @@ class FaultEntry(Checked):
     seed: Annotated[int, Field(default=0, ge=0, description="where the random numbers of `probability` begin")]
     ramp: NotNegative = Field(default=0.0, description="how long it takes to grow to its full size [s]")
     pause: NotNegative = Field(default=0.0, description="intermittent: away for this long [s], then there for `for`")
+    message: str | None = Field(default=None, description="faults of the bus: the message that they are about")
+    signal: str | None = Field(default=None, description="faults of the bus: the signal that is written")
+    value: float | None = Field(default=None, description="faults of the bus: what the signal says, in its unit")
+    direction: Literal["to plant", "from plant"] | None = Field(
+        default=None, description="faults of the bus: whose frames, where no message is named"
+    )
 
     @field_validator("when")
     @classmethod
@@ -52,12 +59,19 @@ class FaultEntry(Checked):
     @model_validator(mode="after")
     def _known(self) -> "FaultEntry":
         try:
-            fault_named(self.fault).complete(self.quantities)
+            fault = fault_named(self.fault)
+            fault.complete(self.quantities)
+            fault.check_about(self.about)
         except Failure as error:
             raise wrong("fault", text=str(error)) from None
         if self.pause and self.lasts is None:
             raise wrong("pause", text="an intermittent fault needs `for`, how long it is there each time")
         return self
+
+    @property
+    def about(self) -> About:
+        """What a fault of the bus is about."""
+        return About(self.message, self.signal, self.value, self.direction)
 
     def inserted(self, step_s: float, place: str = "") -> Inserted:
         """Return it in ticks of `step_s`; times are rounded to ticks, and none that is not 0 becomes 0."""
@@ -77,6 +91,7 @@ class FaultEntry(Checked):
             ramp=ticks(self.ramp),
             pause=ticks(self.pause),
             place=place,
+            about=self.about,
         )
 
 
