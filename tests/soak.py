@@ -19,6 +19,7 @@ from typing import Any, cast
 import numpy as np
 
 from hilplant.bench import Bench, load_bench
+from hilplant.bus.in_memory import InMemoryBus
 from hilplant.ecu.node import EcuNode
 from hilplant.ecu.settings import controller_settings
 from hilplant.ecu.vocabulary import Master, Stalk
@@ -29,7 +30,6 @@ from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.server import build_loop
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS
-from hilplant.simulation.bus_run import _End
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 ROUND_S = 60
@@ -93,8 +93,8 @@ class Car:
 
 def rounds(bench: Bench, seed: int) -> Iterator[tuple[Tape, Any]]:
     """Run for ever; yield after each round what it left, and the loop."""
-    plant, controller = _End(), _End()
-    plant.other, controller.other = controller, plant
+    bus = InMemoryBus()
+    plant, controller = bus.end(), bus.end()
     ticks = ROUND_S * SECOND_NS // bench.step_ns
     tape = Tape(np.zeros((ticks, FIRST_OUTPUT + len(OUTPUTS))), np.zeros(ROW_WIDTH), Counter())
     loop = build_loop(bench, cast("Any", plant), VirtualClock(), cast("Ring", tape))

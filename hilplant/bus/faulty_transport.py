@@ -33,15 +33,20 @@ class PlacedFault:
 class _Way:
     """One direction: the faults in their order, and the frames that wait for their time."""
 
-    def __init__(self, faults: Sequence[PlacedFault]) -> None:
-        self._faults = faults
+    def __init__(self) -> None:
+        self.faults: list[PlacedFault] = []
         self._waiting: list[tuple[int, int, Frame, int | None]] = []
         self._number = 0
 
     @property
+    def idle(self) -> bool:
+        """Whether nothing is to be done here: no fault, and no frame that waits."""
+        return not (self.faults or self._waiting)
+
+    @property
     def cut_off(self) -> bool:
         """Whether the node that sends this way is off the bus."""
-        return any(fault.effect.cuts_off and fault.present() for fault in self._faults)
+        return any(fault.effect.cuts_off and fault.present() for fault in self.faults)
 
     def add(self, frame: Frame, now_ns: int, waited_ns: int | None = 0) -> None:
         """Take a frame."""
@@ -49,7 +54,7 @@ class _Way:
 
     def add_own(self, now_ns: int) -> None:
         """Take the frames that faults send by themselves; only the faults behind them change them."""
-        for place, fault in enumerate(self._faults):
+        for place, fault in enumerate(self.faults):
             own = fault.effect.own(now_ns, fault.present())
             if own:
                 self._pass([(frame, 0) for frame in own], place + 1, now_ns, 0)
@@ -67,7 +72,7 @@ class _Way:
         heapq.heappush(self._waiting, (-1, 0, frame, 0))
 
     def _pass(self, passing: Passing, first: int, now_ns: int, waited_ns: int | None) -> None:
-        for fault in self._faults[first:]:
+        for fault in self.faults[first:]:
             passed: Passing = []
             for frame, delay_ns in passing:
                 if fault.takes(frame):
@@ -85,11 +90,16 @@ class _Way:
 class FaultyTransport:
     """A transport with faults before it; see `bus.interface.Transport`."""
 
-    def __init__(self, transport: Transport, faults: Sequence[PlacedFault]) -> None:
+    def __init__(self, transport: Transport, faults: Sequence[PlacedFault] = ()) -> None:
         self._transport = transport
-        self._in = _Way([fault for fault in faults if not fault.outgoing])
-        self._out = _Way([fault for fault in faults if fault.outgoing])
+        self._in, self._out = _Way(), _Way()
         self._now_ns = 0
+        self.add(faults)
+
+    def add(self, faults: Sequence[PlacedFault]) -> None:
+        """Insert more faults; each acts on what those before it let pass."""
+        for fault in faults:
+            (self._out if fault.outgoing else self._in).faults.append(fault)
 
     def begin(self, now_ns: int) -> None:
         """Go on to the next tick; the faults are those of this tick."""
@@ -110,6 +120,8 @@ class FaultyTransport:
 
     def receive(self, limit: int) -> list[Frame]:
         """Return the frames that have arrived, at most `limit`."""
+        if self._in.idle and self._out.idle:
+            return self._transport.receive(limit)
         for frame in self._transport.receive(limit):
             self._in.add(frame, self._now_ns)
         return [frame for frame, _ in self._arrived(limit)]
@@ -122,6 +134,8 @@ class FaultyTransport:
 
     def send(self, frame: Frame) -> SendResult:
         """Take a frame; SENT also where a fault loses or delays it, as the node cannot know."""
+        if self._out.idle and self._in.idle:
+            return self._transport.send(frame)
         if not self.up:
             return SendResult.DOWN
         before = self._flush()

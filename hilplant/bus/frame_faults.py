@@ -57,17 +57,17 @@ class FrameFault:
         self._last = frame
         return passing
 
-    def own(self, now_ns: int, present: bool) -> list[Frame]:  # noqa: ARG002, PLR6301 - for those that send by themselves
+    def own(self, now_ns: int, present: bool) -> list[Frame]:
         """Return frames that it sends of its own accord."""
         return []
 
     def _begin(self, frame: Frame) -> None:
         """Prepare for the first frame that it is there for."""
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002, PLR6301
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         return [(frame, 0)]
 
-    def _spare(self, frame: Frame) -> Passing:  # noqa: PLR6301
+    def _spare(self, frame: Frame) -> Passing:
         return [(frame, 0)]
 
     def _delay_ns(self) -> int:
@@ -91,14 +91,14 @@ class FrameFault:
 class Dropped(FrameFault):
     """Lose a share of the frames."""
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         return [] if self._random.random() < self._quantities["share"] else [(frame, 0)]
 
 
 class Delayed(FrameFault):
     """Hold each frame back for a time."""
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         return [(frame, self._delay_ns())]
 
 
@@ -115,7 +115,7 @@ class Jittered(FrameFault):
 class Duplicated(FrameFault):
     """Let each frame come twice."""
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         return [(frame, 0), (frame, self._delay_ns())]
 
 
@@ -124,7 +124,7 @@ class Reordered(FrameFault):
 
     _held: Frame | None = None
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         held, self._held = self._held, None
         if held is None:
             self._held = frame
@@ -139,7 +139,7 @@ class Reordered(FrameFault):
 class Shortened(FrameFault):
     """Take bytes off the end."""
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         return [(frame._replace(data=frame.data[: max(0, len(frame.data) - int(self._quantities["bytes"]))]), 0)]
 
 
@@ -149,14 +149,14 @@ class CounterStuck(FrameFault):
     def _begin(self, frame: Frame) -> None:
         self._stays = (self._last or frame).data
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         return [(self._with_counter(frame, lambda forger, _counter: forger.counter(self._stays)), 0)]
 
 
 class CounterJumps(FrameFault):
     """Add a step to the counter."""
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         step = int(self._quantities["steps"])
         return [(self._with_counter(frame, lambda _forger, counter: counter + step), 0)]
 
@@ -164,14 +164,14 @@ class CounterJumps(FrameFault):
 class WrongChecksum(FrameFault):
     """Turn a bit of the checksum over."""
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         return [(frame if self._forger is None else frame._replace(data=self._forger.corrupted(frame.data)), 0)]
 
 
 class WrongValue(FrameFault):
     """Write a value into a signal, with the right checksum over it."""
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         target, whole = self.target, int.from_bytes(frame.data, "little")
         raw = -1 if target.raw is None else target.raw
         for bit, place in enumerate(target.places):
@@ -187,7 +187,7 @@ class Stale(FrameFault):
     def _begin(self, frame: Frame) -> None:
         self._old = frame.data
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         return [(self._with_data(frame, self._old), 0)]
 
 
@@ -200,7 +200,7 @@ class Paced(FrameFault):
     def _begin(self, frame: Frame) -> None:
         self._count = 0 if self._forger is None else self._forger.counter((self._last or frame).data)
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002, PLR6301
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         return []
 
     def own(self, now_ns: int, present: bool) -> list[Frame]:
@@ -217,7 +217,7 @@ class Babbling(FrameFault):
 
     whole_node = True
 
-    def own(self, now_ns: int, present: bool) -> list[Frame]:  # noqa: ARG002
+    def own(self, now_ns: int, present: bool) -> list[Frame]:
         """Return the frames of a tick."""
         if not present:
             return []
@@ -228,7 +228,7 @@ class Babbling(FrameFault):
 class Silent(FrameFault):
     """Let nothing pass."""
 
-    def _change(self, frame: Frame, now_ns: int) -> Passing:  # noqa: ARG002, PLR6301
+    def _change(self, frame: Frame, now_ns: int) -> Passing:
         return []
 
 
@@ -238,7 +238,7 @@ class Restarted(Silent):
     _silenced = False
     _offset: int | None = None
 
-    def _begin(self, frame: Frame) -> None:  # noqa: ARG002
+    def _begin(self, frame: Frame) -> None:
         self._silenced, self._offset = True, None
 
     def _spare(self, frame: Frame) -> Passing:

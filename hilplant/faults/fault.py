@@ -39,12 +39,16 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class About:
-    """What a fault of the bus is about; `direction` is "to plant" or "from plant", that of the message where it has one."""
+    """What a fault of the bus is about; `direction` is "to plant" or "from plant"; a message has one of its own."""
 
     message: str | None = None
     signal: str | None = None
     value: float | None = None
     direction: str | None = None
+
+
+#: What a fault of the plant is about.
+NOTHING = About()
 
 
 @dataclass(frozen=True, slots=True)

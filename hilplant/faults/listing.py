@@ -53,7 +53,9 @@ def _takes(fault: FaultDefinition) -> list[str]:
         return told
     if "protection" in fault.about:
         return [*told, "message: one with end-to-end protection"]
-    return [*told, *(f"{name}: {ABOUT[name]}" for name in fault.about)] if fault.about else [*told, "message or direction"]
+    return (
+        [*told, *(f"{name}: {ABOUT[name]}" for name in fault.about)] if fault.about else [*told, "message or direction"]
+    )
 
 
 def _example_about(fault: FaultDefinition) -> str:

@@ -46,7 +46,9 @@ def _placed(course: Course, bench: BusSide) -> "Iterator[PlacedFault]":
     name, outgoing = inserted.about.message, inserted.about.direction == "from plant"
     if name is not None:
         if name not in received and name not in sent:
-            raise _wrong(inserted, f"the plant neither hears nor sends a message '{name}'{suggestion(name, received | sent)}")
+            raise _wrong(
+                inserted, f"the plant neither hears nor sends a message '{name}'{suggestion(name, received | sent)}"
+            )
         if inserted.about.direction is not None and outgoing is not (name in sent):
             raise _wrong(inserted, f"the plant does not {'send' if outgoing else 'hear'} {name}")
         outgoing = name in sent
@@ -70,7 +72,7 @@ def _made(
         raise AssertionError(f"{inserted.fault.name} is none of the bus")
     if "protection" in inserted.fault.about and target.protection is None:
         raise _wrong(inserted, f"{name} has no protection in this bench, so that it has no counter and no checksum")
-    effect = kind(target, inserted.values, Random(f"{inserted.seed} {name}"))  # noqa: S311 - a seed is wanted
+    effect = kind(target, inserted.values, Random(f"{inserted.seed} {name}"))
     return PlacedFault(effect, outgoing, lambda: course.level > 0.0, others)
 
 

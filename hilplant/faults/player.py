@@ -27,6 +27,11 @@ class FaultPlayer:
         self._step_s = step_s
         self._levels: tuple[float, ...] = (0.0,) * len(self.courses)
 
+    def add(self, course: Course) -> None:
+        """Insert one more; its times count from the first tick of the run."""
+        self.courses.append(course)
+        self._levels += (0.0,)
+
     @property
     def present(self) -> tuple[str, ...]:
         """Names of the faults that are there now."""

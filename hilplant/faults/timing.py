@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from random import Random
 
-from hilplant.faults.fault import About, FaultDefinition
+from hilplant.faults.fault import NOTHING, About, FaultDefinition
 from hilplant.verdicts.expectations import Condition
 from hilplant.verdicts.ticks import margin
 
@@ -31,7 +31,7 @@ class Inserted:
     ramp: int = 0
     pause: int = 0
     place: str = field(default="", compare=False)
-    about: About = About()
+    about: About = NOTHING
 
 
 class Course:
@@ -45,22 +45,29 @@ class Course:
         self._before: Row | None = None
         self._drawn = -1
         self._comes = False
+        self._ended = False
 
     @property
     def waiting(self) -> bool:
         """Whether it waits for a condition, so that every tick has to be looked at."""
-        return bool(self.inserted.when) and self._begin is None
+        return bool(self.inserted.when) and self._begin is None and not self._ended
+
+    def end(self) -> None:
+        """Let it go, and not come again."""
+        self._ended = True
 
     def move(self, tick: int, row: Row | None) -> None:
         """Go on to `tick`; `row` are the signals of the tick before, None where nobody needs them."""
         if self._begin is None and tick >= self.inserted.at and self._met(row):
             self._begin = tick
         self._before = row
-        self.level = 0.0 if self._begin is None else self._at(tick - self._begin)
+        self.level = 0.0 if self._begin is None or self._ended else self._at(tick - self._begin)
 
     def next_change(self, tick: int) -> float:
         """Return the next tick after `tick` at which the level may be another; endless where none is."""
         inserted = self.inserted
+        if self._ended:
+            return tick + 1 if self.level else math.inf
         if self._begin is None:
             return max(inserted.at, tick + 1)
         elapsed, length = tick - self._begin, inserted.ticks

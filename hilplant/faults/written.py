@@ -64,6 +64,8 @@ class FaultEntry(Checked):
             fault.check_about(self.about)
         except Failure as error:
             raise wrong("fault", text=str(error)) from None
+        if self.ramp and fault.on_frames is not None:
+            raise wrong("ramp", text="a fault of the bus is there or not; it cannot grow")
         if self.pause and self.lasts is None:
             raise wrong("pause", text="an intermittent fault needs `for`, how long it is there each time")
         return self
@@ -102,3 +104,17 @@ Written = Sequence[tuple[FaultEntry, str]]
 def inserted(written: Written, step_s: float) -> list[Inserted]:
     """Return all entries in ticks."""
     return [entry.inserted(step_s, place) for entry, place in written]
+
+
+def refuse_faults_of_the_bus(written: Written) -> None:
+    """Refuse, with its place, the first fault that needs a bus; for runs that have none.
+
+    Raises
+    ------
+    Failure
+        With the command that has one.
+
+    """
+    for entry, place in written:
+        if fault_named(entry.fault).on_frames is not None:
+            raise Failure(f"{place}: fault '{entry.fault}' acts on frames, and here is no bus; hilplant test has one")

@@ -1,22 +1,22 @@
 """Plant loop and ECU node on an in-memory bus in virtual time, with every tick and frame kept."""
 
-from collections import Counter, deque
+from collections import Counter
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bench import Bench
 from hilplant.bus.frame import Frame
-from hilplant.bus.transport import SendResult
+from hilplant.bus.in_memory import InMemoryBus
 from hilplant.ecu.node import EcuNode
 from hilplant.ecu.settings import controller_settings
 from hilplant.ecu.stalk import parse_stalk, stalk_at
 from hilplant.runtime.clock import VirtualClock
-from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.server import build_loop
+from hilplant.runtime.tape import Tape
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import MILLISECOND_NS, SECOND_NS, TURN_RAD
 
@@ -29,50 +29,24 @@ ROUND_S = 37.5
 WEATHER = ((13.5, 0.0), (13.5, 1.0), (11.0, 1.0), (15.0, 0.0))
 
 
-class _End:
-    """One end of a bus without delay: a transport."""
-
-    up, missed = True, 0
-
-    def __init__(self) -> None:
-        self.other, self.coming = self, deque[Frame]()
-
-    def receive(self, limit: int) -> list[Frame]:
-        return [self.coming.popleft() for _ in range(min(limit, len(self.coming)))]
-
-    def send(self, frame: Frame) -> SendResult:
-        self.other.coming.append(frame)
-        return SendResult.SENT
-
-    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
-        return [(frame, 0) for frame in self.receive(limit)]
-
-    def reopen(self) -> bool:
-        return True
-
-    def close(self) -> None:
-        """Nothing is open."""
-
-
-class _Tape:
-    """Takes what a ring takes, and keeps it: outputs of each tick, frames by identifier and direction."""
-
-    lost = recording = 0
+class _Outputs(Tape):
+    """A tape for long runs: it keeps outputs, and counts frames by identifier, length and direction."""
 
     def __init__(self, ticks: int) -> None:
-        self._line, self._ticks = np.zeros(ROW_WIDTH), 0
+        super().__init__()
         self.outputs = np.empty((ticks, len(OUTPUTS)))
-        self.frames: Counter[tuple[int, int, bool]] = Counter()
+        self.counted: Counter[tuple[int, int, bool]] = Counter()
 
     def next_row(self) -> Floats:
-        return self._line
+        row: Floats = self._rows[0]
+        return row
 
     def commit(self) -> None:
-        self.outputs[self._ticks] = self._line[_FIRST_OUTPUT : _FIRST_OUTPUT + len(OUTPUTS)]
-        self._ticks += 1
+        self.outputs[self.ticks] = self._rows[0, _FIRST_OUTPUT : _FIRST_OUTPUT + len(OUTPUTS)]
+        self.ticks += 1
 
-    def write_frame(self, _tick: int, _bus_ns: int, frame: Frame, sent: bool) -> None:
-        self.frames[frame.identifier, len(frame.data), sent] += 1
+    def write_frame(self, tick: int, bus_ns: int, frame: Frame, sent: bool) -> None:
+        self.counted[frame.identifier, len(frame.data), sent] += 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,14 +82,13 @@ def drive(bench: Bench, seconds: float, look_ms: float | None = None) -> BusRun:
     `look_ms` is how often the ECU looks at what it heard, its own period when left out. The crank turns by up to 2
     degrees in the shipped 5 ms, so that two plants that are a hair apart may stop by that much apart.
     """
-    plant, controller = _End(), _End()
-    plant.other, controller.other = controller, plant
+    bus = InMemoryBus()
     ticks = round(seconds * SECOND_NS / bench.step_ns)
-    tape = _Tape(ticks)
+    tape = _Outputs(ticks)
     weather = _Weather(bench)
-    loop = build_loop(bench, cast("Any", plant), VirtualClock(), cast("Ring", tape))
+    loop = build_loop(bench, bus.end(), VirtualClock(), cast("Ring", tape))
     loop.control = weather
-    ecu = EcuNode(bench.ecu_side(), cast("Any", controller), controller_settings(bench.ecu))
+    ecu = EcuNode(bench.ecu_side(), bus.end(), controller_settings(bench.ecu))
     poll_ticks = round((look_ms or bench.ecu.period_ms) * MILLISECOND_NS / bench.step_ns)
     moves = parse_stalk(ROUND)
     for tick in range(ticks):
@@ -123,7 +96,7 @@ def drive(bench: Bench, seconds: float, look_ms: float | None = None) -> BusRun:
         loop.tick(now_ns)
         if tick % poll_ticks == 0:
             ecu.poll(now_ns, stalk_at(moves, now_ns / SECOND_NS % ROUND_S))
-    return BusRun(bench.step_ns / SECOND_NS, tape.outputs, tape.frames)
+    return BusRun(bench.step_ns / SECOND_NS, tape.outputs, tape.counted)
 
 
 class _Weather:

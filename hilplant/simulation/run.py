@@ -10,7 +10,7 @@ from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench, initial_state, load_bench
 from hilplant.failure import Failure
 from hilplant.faults.player import FaultPlayer, signal_row
-from hilplant.faults.written import inserted
+from hilplant.faults.written import inserted, refuse_faults_of_the_bus
 from hilplant.models.plant import simulate_rows
 from hilplant.recording.tables import check_ending, write_table
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS
@@ -65,6 +65,7 @@ def simulate(bench: Bench | str | Path = "default", scenario: Scenario | str | P
 
 def _simulate_with_faults(bench: Bench, scenario: Scenario, state: Floats, rows: tuple[Floats, Floats]) -> None:
     """Run the inputs of every tick into the outputs, in pieces in which no fault changes."""
+    refuse_faults_of_the_bus(scenario.faults)
     inputs, outputs = rows
     step_s = bench.step_ns / SECOND_NS
     player = FaultPlayer(inserted(scenario.faults, step_s), bench.parameter_row, step_s)

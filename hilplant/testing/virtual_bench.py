@@ -1,6 +1,6 @@
 """A plant, and if wanted the stand-in ECU, on an in-memory bus in virtual time; every tick and every frame is kept."""
 
-from collections import defaultdict, deque
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -8,139 +8,53 @@ from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hilplant.bench import Bench
 from hilplant.bench.assembly import initial_state
 from hilplant.bus.codec import SentMessage
-from hilplant.bus.frame import Frame
-from hilplant.bus.interface import SendResult
+from hilplant.bus.in_memory import InMemoryBus
 from hilplant.bus.node import LinkSettings, Node
 from hilplant.ecu.node import EcuNode
 from hilplant.ecu.settings import controller_settings
 from hilplant.ecu.stalk import stalk_at
+from hilplant.faults.acting import ActingFaults
+from hilplant.faults.player import signal_row
+from hilplant.faults.timing import Row
+from hilplant.faults.written import inserted
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.loop import ROW_WIDTH
-from hilplant.runtime.ring import FRAME_DTYPE, Ring
+from hilplant.runtime.ring import Ring
 from hilplant.runtime.server import build_loop
-from hilplant.signals import ECU_SAID, INPUT_INDEX
+from hilplant.runtime.tape import Tape
+from hilplant.signals import ECU_SAID, INPUT_INDEX, INPUTS, OUTPUTS
 from hilplant.simulation.scenario import Scenario
 from hilplant.testing.evidence import Evidence
 from hilplant.units import MILLISECOND_NS, SECOND_NS
-
-Floats = NDArray[np.float64]
 
 _RELAYS = frozenset((INPUT_INDEX["relay_on"], INPUT_INDEX["relay_fast"]))
 #: A run in virtual time has no date.
 _NO_DATE = datetime(1970, 1, 1, tzinfo=UTC)
 
 
-class InMemoryBus:
-    """A bus without delay: what one end sends, all others have at once.
-
-    `carry` is where a frame passes; a fault of the bus stands in its place, and gives back what arrives.
-    """
-
-    def __init__(self) -> None:
-        self.ends: list[BusEnd] = []
-
-    def end(self) -> "BusEnd":
-        """Return a new end: a transport."""
-        self.ends.append(BusEnd(self))
-        return self.ends[-1]
-
-    def carry(self, frame: Frame) -> tuple[Frame, ...]:
-        """Return what arrives of a frame."""
-        return (frame,)
-
-
-class BusEnd:
-    """One end of the bus; see `bus.interface.Transport`."""
-
-    up, missed = True, 0
-
-    def __init__(self, bus: InMemoryBus) -> None:
-        self._bus = bus
-        self.coming: deque[Frame] = deque()
-
-    def receive(self, limit: int) -> list[Frame]:
-        """Return what has come."""
-        if not self.coming:
-            return []
-        return [self.coming.popleft() for _ in range(min(limit, len(self.coming)))]
-
-    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
-        """Return what has come; nothing ever waits here."""
-        return [(frame, 0) for frame in self.receive(limit)]
-
-    def send(self, frame: Frame) -> SendResult:
-        """Give a frame to all others."""
-        for arriving in self._bus.carry(frame):
-            for end in self._bus.ends:
-                if end is not self:
-                    end.coming.append(arriving)
-        return SendResult.SENT
-
-    def reopen(self) -> bool:
-        """Say that it is open."""
-        return True
-
-    def close(self) -> None:
-        """Nothing is open."""
-
-
-class Tape:
-    """Takes what a ring takes, and keeps it."""
-
-    lost = recording = 0
-
-    def __init__(self) -> None:
-        self._rows, self.ticks = np.zeros((4096, ROW_WIDTH)), 0
-        self.frames: list[tuple[int, int, Frame, bool]] = []
-
-    def next_row(self) -> Floats:
-        """Return the row to fill."""
-        if self.ticks == len(self._rows):
-            self._rows = np.concatenate([self._rows, np.zeros_like(self._rows)])
-        row: Floats = self._rows[self.ticks]
-        return row
-
-    def commit(self) -> None:
-        """Keep the row."""
-        self.ticks += 1
-
-    def write_frame(self, tick: int, bus_ns: int, frame: Frame, sent: bool) -> None:
-        """Keep a frame."""
-        self.frames.append((tick, bus_ns, frame, sent))
-
-    def read_rows(self) -> Floats:
-        """Return all rows."""
-        return self._rows[: self.ticks]
-
-    def read_frames(self) -> NDArray[np.void]:
-        """Return all frames as the ring holds them."""
-        found = np.zeros(len(self.frames), FRAME_DTYPE)
-        for place, (tick, bus_ns, frame, sent) in enumerate(self.frames):
-            flags = sum(flag << bit for bit, flag in enumerate((sent, *frame[2:])))
-            data = frame.data.ljust(64, b"\0")
-            found[place] = (tick, bus_ns, frame.identifier, flags, len(frame.data), 0, list(data))
-        return found
-
-
 class VirtualBench:
     """A bench that is stepped: plant, stand-in ECU (`stand_in`) and the scenario's hand on one bus.
 
     Time 0 is the first tick. A relay that the scenario commands goes over the bus, in the ECU's messages, and no
-    stand-in ECU joins; every other input of a scenario is set in the plant itself, in its tick.
+    stand-in ECU joins; every other input of a scenario is set in the plant itself, in its tick. `faults` are those of
+    the scenario, and take more.
     """
 
     def __init__(self, bench: Bench, scenario: Scenario | None = None, stand_in: bool = True) -> None:
         if scenario is not None and scenario.initial:
             row = initial_state(bench.parameters, bench.initial | scenario.initial)
             bench = replace(bench, state_row=row)
+        bench = replace(bench, parameter_row=bench.parameter_row.copy())  # faults change it
         self.bench, self.bus, self.tape = bench, InMemoryBus(), Tape()
+        self.faults = ActingFaults(bench, self.bus.end())
+        for each in inserted(scenario.faults, bench.step_ns / SECOND_NS) if scenario is not None else ():
+            self.faults.insert(each)
         self._stalk = scenario.stalk if scenario is not None else ()
-        self._loop = build_loop(bench, cast("Any", self.bus.end()), VirtualClock(), cast("Ring", self.tape))
+        self._loop = build_loop(bench, self.faults.transport, VirtualClock(), cast("Ring", self.tape))
         self._changes = {} if scenario is None else _changes(scenario, bench)
         commanded = scenario is not None and bool(_RELAYS & set(scenario.entries))
         self._commander = _Commander(bench, self.bus) if commanded else None
@@ -169,9 +83,19 @@ class VirtualBench:
                 self._loop.commanded[index] = value
         if self._commander is not None:
             self._commander.send(now_ns)
+        for index, value in self.faults.begin(tick, self._seen()).items():
+            self.bench.parameter_row[index] = value
         self._loop.tick(now_ns)
         if self.ecu is not None and tick % self._poll_ticks == 0:
             self.ecu.poll(now_ns, stalk_at(self._stalk, now_ns / SECOND_NS))
+
+    def _seen(self) -> Row | None:
+        """Return the signals of the tick before, where a fault waits for them."""
+        if not (self.tape.ticks and self.faults.watches):
+            return None
+        row = self.tape.read_rows()[-1, 2:]
+        ends = len(INPUTS), len(INPUTS) + len(OUTPUTS)
+        return signal_row(INPUTS, row[: ends[0]]) | signal_row(OUTPUTS, row[ends[0] : ends[1]])
 
     def run(self, ticks: int) -> None:
         """Take many ticks."""

@@ -7,8 +7,8 @@ from typing import Any
 import can
 from can.broadcastmanager import CyclicSendTaskABC, ModifiableCyclicTaskABC
 
+from hilplant.bus.in_memory import BusEnd
 from hilplant.bus.transport import frame_of, message_of
-from hilplant.testing.virtual_bench import BusEnd
 from hilplant.units import SECOND_NS
 from hilplant.verdicts.written import DEFAULT_WAIT_S
 

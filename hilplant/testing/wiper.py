@@ -1,14 +1,19 @@
 """The plant as a test sees it: send messages, let time pass, wait for signals, say what must hold all the while."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError
 
 from hilplant.bench import Bench
 from hilplant.bench.values import input_index, signal_value
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.failure import Failure
+from hilplant.faults.timing import Course
+from hilplant.faults.written import FaultEntry
 from hilplant.signals import INPUTS
 from hilplant.testing.evidence import column_of
 from hilplant.testing.known_signals import database_signals, protections_of
@@ -26,6 +31,8 @@ if TYPE_CHECKING:
     from hilplant.testing.virtual_can import VirtualCanBus
 
 _DEGREES = "_deg"
+#: The keys of a fault's course; all others are its quantities.
+_COURSE = {field.alias or name for name, field in FaultEntry.model_fields.items()} - {"fault", "with"}
 
 
 class WiperUnderTest:
@@ -89,6 +96,31 @@ class WiperUnderTest:
                 self.virtual.set(index, signal_value(INPUTS[index], value))
             except ValueError as error:
                 raise Failure(str(error)) from error
+
+    @contextmanager
+    def fault(self, fault: str, /, **keys: Any) -> Iterator[None]:
+        """Let a fault be there from the next tick on, inside a `with`; `hilplant faults` lists them.
+
+        Quantities are named, ``fault("resistance_53", resistance_ohm=0.5)``; all other keys are those of a scenario's
+        `faults`, with `for_` for how long. `at` counts from now.
+        """
+        course = self.insert_fault(fault, **keys)
+        try:
+            yield
+        finally:
+            course.end()
+
+    def insert_fault(self, fault: str, /, **keys: Any) -> Course:
+        """Insert a fault that stays for as long as it says; keys as for `fault`."""
+        given = {key.rstrip("_"): value for key, value in keys.items()}
+        course = {key: value for key, value in given.items() if key in _COURSE}
+        quantities = {key: value for key, value in given.items() if key not in _COURSE}
+        at = self.time_s + course.pop("at", 0.0)
+        try:
+            entry = FaultEntry.model_validate({"fault": fault, "with": quantities, "at": at} | course)
+        except ValidationError as error:
+            raise Failure("; ".join(each["msg"] for each in error.errors())) from error
+        return self.virtual.faults.insert(entry.inserted(self.virtual.faults.step_s))
 
     def step(self) -> None:
         """Let one tick pass."""

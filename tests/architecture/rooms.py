@@ -53,7 +53,7 @@ ARROWS: dict[str, str] = {
     "checked_yaml": "failure resources",
     "bus": "units declaration signals arrays failure",
     "verdicts": "units declaration signals arrays failure checked_yaml",
-    "faults": "declaration signals arrays failure models checked_yaml bus verdicts",
+    "faults": "units declaration signals arrays failure models checked_yaml bus verdicts",
     "bench": f"{_PHYSICS} checked_yaml bus",
     "runtime": "units declaration signals arrays failure jit models control bus",
     "ecu": f"{_PHYSICS} bus bench runtime",

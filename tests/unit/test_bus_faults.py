@@ -1,6 +1,8 @@
 """Each fault of the bus against the frames that it must make, and a node's own counts of what it then hears."""
 
 from collections import deque
+from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import pytest
@@ -8,13 +10,13 @@ import pytest
 from hilplant.bus.faulty_transport import FaultyTransport
 from hilplant.bus.frame import Frame
 from hilplant.bus.interface import SendResult
-from hilplant.bus.protection import Checker, Protection, Protector, FrameCheck
+from hilplant.bus.protection import Checker, FrameCheck, Protection, Protector
+from hilplant.failure import Failure
 from hilplant.faults.bus_catalogue import BUS_FAULTS
 from hilplant.faults.catalogue import fault_named
 from hilplant.faults.fault import About
 from hilplant.faults.on_bus import placed_faults
 from hilplant.faults.timing import Course, Inserted
-from hilplant.failure import Failure
 
 MS = 1_000_000
 PROTECTION = Protection(1, 4, data_id=0x123)
@@ -37,7 +39,7 @@ class _Message:
 class _Side:
     receive = (_Message("Command", 256, 4, PROTECTION),)
     send = (_Message("Status", 512, 2, None),)
-    sources = {"own.dbc": DATABASE}
+    sources = MappingProxyType({"own.dbc": DATABASE})
 
 
 class _Wire:
@@ -239,5 +241,5 @@ def test_what_cannot_be_is_refused_in_one_line(name: str, about: About, text: st
 
 
 def test_every_fault_of_the_bus_is_tried_here() -> None:
-    tried = open(__file__, encoding="utf-8").read()
+    tried = Path(__file__).read_text(encoding="utf-8")
     assert not [fault.name for fault in BUS_FAULTS if f'"{fault.name}"' not in tried]

@@ -9,6 +9,7 @@ import pytest
 
 from hilplant import BenchError, load_bench
 from hilplant.failure import Failure
+from hilplant.faults.bus_catalogue import BUS_FAULTS
 from hilplant.faults.catalogue import BY_NAME, FAULTS, fault_named
 from hilplant.faults.listing import fault_lines, table
 from hilplant.faults.player import FaultPlayer
@@ -36,7 +37,7 @@ def levels(inserted: Inserted, ticks: int) -> list[float]:
 
 
 def test_every_change_of_every_fault_names_an_element_that_there_is() -> None:
-    assert len(BY_NAME) == len(FAULTS)
+    assert len(BY_NAME) == len(FAULTS) + len(BUS_FAULTS)
     for fault in FAULTS:
         for change in fault.changes:
             assert change.element in PARAMETER_INDEX, fault.name
@@ -159,7 +160,7 @@ def test_a_mistake_in_the_faults_is_told_with_its_line(tmp_path: Path, entry: st
 
 
 def test_one_fault_in_full_can_be_pasted_into_a_scenario(tmp_path: Path) -> None:
-    for fault in FAULTS:
+    for fault in BY_NAME.values():
         lines = fault_lines(fault.name)
         text = "seconds: 4\n" + "\n".join(
             line.removeprefix("  ") for line in lines[lines.index("in a scenario:") + 1 :]

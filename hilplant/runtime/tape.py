@@ -1,0 +1,47 @@
+"""All ticks and frames of a run in virtual time, kept in memory; stands where the ring to the recorder would."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hilplant.arrays import Floats
+from hilplant.bus.frame import Frame
+from hilplant.runtime.loop import ROW_WIDTH
+from hilplant.runtime.ring import FRAME_DTYPE
+
+
+class Tape:
+    """Takes what a ring takes, and keeps it."""
+
+    lost = recording = 0
+
+    def __init__(self) -> None:
+        self._rows, self.ticks = np.zeros((4096, ROW_WIDTH)), 0
+        self.frames: list[tuple[int, int, Frame, bool]] = []
+
+    def next_row(self) -> Floats:
+        """Return the row to fill."""
+        if self.ticks == len(self._rows):
+            self._rows = np.concatenate([self._rows, np.zeros_like(self._rows)])
+        row: Floats = self._rows[self.ticks]
+        return row
+
+    def commit(self) -> None:
+        """Keep the row."""
+        self.ticks += 1
+
+    def write_frame(self, tick: int, bus_ns: int, frame: Frame, sent: bool) -> None:
+        """Keep a frame."""
+        self.frames.append((tick, bus_ns, frame, sent))
+
+    def read_rows(self) -> Floats:
+        """Return all rows."""
+        return self._rows[: self.ticks]
+
+    def read_frames(self) -> NDArray[np.void]:
+        """Return all frames as the ring holds them."""
+        found = np.zeros(len(self.frames), FRAME_DTYPE)
+        for place, (tick, bus_ns, frame, sent) in enumerate(self.frames):
+            flags = sum(flag << bit for bit, flag in enumerate((sent, *frame[2:])))
+            data = frame.data.ljust(64, b"\0")
+            found[place] = (tick, bus_ns, frame.identifier, flags, len(frame.data), 0, list(data))
+        return found
