@@ -17,6 +17,7 @@ class Incoming:
         self.message = message
         self.checker = Checker(message.protection) if message.protection else None
         self.valid_ns: int | None = None
+        self.refused_ns: int | None = None  # when the last frame came that failed its check
         self.late = False
         self.is_missing = True  # as last judged
         self._switches: tuple[object, ...] = ()
@@ -28,6 +29,10 @@ class Incoming:
         if self.checker is not None and self.checker.invalid:
             return True
         return self.valid_ns is None or now_ns - self.valid_ns > self.message.timeout_ns
+
+    def stayed_away(self, now_ns: int) -> bool:
+        """Whether no frame came at all, so that the next may have any counter; one that stands must not pass so."""
+        return self.refused_ns is None or now_ns - self.refused_ns > self.message.timeout_ns
 
     def is_stale(self, arrived_ns: int, now_ns: int) -> bool:
         """Whether a frame that arrived then is of no use any more."""

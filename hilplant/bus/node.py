@@ -164,6 +164,7 @@ class Node:
         if incoming.checker is not None:
             verdict = incoming.checker.check(data)
             if verdict is not FrameCheck.OK:
+                incoming.refused_ns = arrived_ns
                 return _CAUSES[verdict]
         decoded = message.decode(data)
         cause = value_fault(decoded, message.limits)
@@ -201,7 +202,7 @@ class Node:
             elif not incoming.late:
                 incoming.late = True
                 self._count("timeout")
-                if incoming.checker is not None:
+                if incoming.checker is not None and incoming.stayed_away(now_ns):
                     incoming.checker.reset()
         self.lost, self.waiting = lost, waiting
 

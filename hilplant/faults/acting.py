@@ -37,6 +37,7 @@ class ActingFaults:
         #: When each came and went: tick, name, whether it is there from then on.
         self.edges: list[tuple[int, str, bool]] = []
         self._there: dict[Course, bool] = {}
+        self._next_tick = 0.0
 
     def insert(self, inserted: Inserted) -> Course:
         """Insert a fault; its times count from the first tick.
@@ -51,7 +52,23 @@ class ActingFaults:
         self.transport.add(placed_faults([course], self._bench))
         self._player.add(course)
         self._there[course] = False
+        self._next_tick = 0.0
         return course
+
+    def end(self, course: Course) -> None:
+        """Let a fault go."""
+        course.end()
+        self._next_tick = 0.0
+
+    def marks(self) -> dict[str, float]:
+        """Return when each first came and last went [s], by a name for people; what stays has no end."""
+        found: dict[str, float] = {}
+        for tick, name, there in self.edges:
+            if there:
+                found.setdefault(name, tick * self.step_s)
+            else:
+                found[f"{name} ends"] = tick * self.step_s
+        return found
 
     @property
     def watches(self) -> bool:
@@ -65,10 +82,15 @@ class ActingFaults:
         """
         if not self._there:
             return {}
+        changes = self._go_on(tick, row) if tick >= self._next_tick or self.watches else {}
+        self.transport.begin(tick * self._bench.step_ns)
+        return changes
+
+    def _go_on(self, tick: int, row: Row | None) -> dict[int, float]:
         changes = self._player.changes(tick, row)
+        self._next_tick = self._player.next_change(tick)
         for course, there in self._there.items():
             if (course.level > 0.0) is not there:
                 self._there[course] = not there
                 self.edges.append((tick, course.inserted.fault.name, not there))
-        self.transport.begin(tick * self._bench.step_ns)
         return changes

@@ -40,6 +40,7 @@ def page_of(tests: Sequence[ScenarioTest]) -> str:
 
 def _test(number: int, test: ScenarioTest) -> dict[str, Any]:
     stimuli = [f"{turn.time_s:g} s: stalk {_moved(turn.move)}" for turn in test.scenario.stalk]
+    stimuli += [f"{time_s:g} s: fault {name}" for name, time_s in test.faults.items()]
     return {
         "id": f"test{number}",
         "test": test,
@@ -90,7 +91,7 @@ def _drawings(test: ScenarioTest, judged: Judged) -> list[SignalDrawing]:
             test.evidence.signal(name, test.database),
             _limits(drawn[name]) if not isinstance(rule, Settles) else (rule.level.lowest, rule.level.highest),
             window,
-            test.scenario.marks,
+            {**test.scenario.marks, **test.faults},
             violation,
             isinstance(rule, Holds) and rule.never,
         )

@@ -1,7 +1,7 @@
 """One scenario as a test: run it, or take a recording of it, and judge all that it expects."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from hilplant.bench import Bench, load_bench
@@ -32,7 +32,8 @@ class Judged:
 class ScenarioTest:
     """A scenario that was run, with its evidence, and what came of each expectation.
 
-    `rerun` is the command line that does it again; `record` writes the run to a file where it is not from one.
+    `rerun` is the command line that does it again; `record` writes the run to a file where it is not from one. `faults`
+    are the times at which faults came and went, by their names.
     """
 
     scenario: Scenario
@@ -43,6 +44,7 @@ class ScenarioTest:
     judged: tuple[Judged, ...]
     rerun: str
     record: Callable[[Path], None] | None = None
+    faults: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -67,7 +69,7 @@ def run_virtually(
     options = (f" --bench {bench_name}" if bench_name else "") + ("" if stand_in else " --ecu external")
     rerun = f"hilplant test {scenario.path}{options}"
     done = judged(scenario, bench.name, virtual.evidence(), database, expectations, rerun)
-    return replace(done, record=virtual.record)
+    return replace(done, record=virtual.record, faults=virtual.faults.marks())
 
 
 def judge_recording(path: Path, scenario_name: str, bench_name: str | None = None) -> ScenarioTest:

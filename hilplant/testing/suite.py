@@ -1,17 +1,20 @@
 """Several scenarios as tests, and the files that tell what came of them."""
 
 import math
+import multiprocessing
+import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from hilplant import resources
 from hilplant.bench import Bench, load_bench
 from hilplant.failure import Failure
 from hilplant.simulation.scenario import Scenario, load_scenario
 from hilplant.testing.scenario_test import RULINGS, ScenarioTest, run_virtually
+from hilplant.testing.virtual_bench import VirtualBench
 
 DEFAULT_BENCH = "default"
 
@@ -46,18 +49,52 @@ def scenario_files(names: Sequence[str]) -> list[Path]:
 def run_tests(
     paths: Iterable[Path], bench_name: str | None, stand_in: bool, tell: Callable[[ScenarioTest], None]
 ) -> list[ScenarioTest]:
-    """Run scenarios one after the other, all read before the first runs; `tell` hears of each when it is judged."""
+    """Run scenarios, all read before the first runs; `tell` hears of each when it is judged, in their order."""
     benches = Benches()
     scenarios: list[Scenario] = [load_scenario(path) for path in paths]
     for scenario in scenarios:
         if not scenario.expect:
             raise Failure(f"{scenario.path}: expects nothing, so that it tests nothing; give it an `expect` section")
+    orders = [
+        _Order(each, benches.named(bench_name or each.bench or DEFAULT_BENCH), stand_in, bench_name)
+        for each in scenarios
+    ]
     done = []
-    for scenario in scenarios:
-        bench = benches.named(bench_name or scenario.bench or DEFAULT_BENCH)
-        done.append(run_virtually(scenario, bench, stand_in, bench_name))
-        tell(done[-1])
+    for test in _results(orders, benches):
+        done.append(test)
+        tell(test)
     return done
+
+
+class _Order(NamedTuple):
+    """A scenario that is to be run."""
+
+    scenario: Scenario
+    bench: Bench
+    stand_in: bool
+    bench_name: str | None
+
+
+#: What the workers are to do; they are copies of this process and find it here.
+_ORDERS: list[_Order] = []
+
+
+def _results(orders: list[_Order], benches: Benches) -> Iterator[ScenarioTest]:
+    """Run all, in their order; on several CPUs where the system can copy a process that has compiled everything."""
+    workers = min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1, len(orders))
+    if workers < 2 or "fork" not in multiprocessing.get_all_start_methods():
+        yield from (run_virtually(*order) for order in orders)
+        return
+    for bench in benches.loaded.values():
+        VirtualBench(bench).run(1)
+    _ORDERS[:] = orders
+    with multiprocessing.get_context("fork").Pool(workers) as pool:
+        yield from pool.imap(_run, range(len(orders)))
+
+
+def _run(number: int) -> ScenarioTest:
+    """Run one test in a process of its own; who wants it recorded runs it again."""
+    return replace(run_virtually(*_ORDERS[number]), record=None)
 
 
 def figures_of(tests: Sequence[ScenarioTest]) -> dict[str, Any]:

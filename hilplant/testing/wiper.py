@@ -108,7 +108,7 @@ class WiperUnderTest:
         try:
             yield
         finally:
-            course.end()
+            self.virtual.faults.end(course)
 
     def insert_fault(self, fault: str, /, **keys: Any) -> Course:
         """Insert a fault that stays for as long as it says; keys as for `fault`."""

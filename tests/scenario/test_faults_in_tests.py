@@ -87,3 +87,16 @@ def test_an_offline_run_has_no_bus(bench: Bench, tmp_path: Path) -> None:
     wanted = scenario(tmp_path, "seconds: 1\nfaults: [{fault: frames_lost, message: ParkSwitch}]\n")
     with pytest.raises(Failure, match=r"own.yaml:2: fault 'frames_lost' acts on frames"):
         simulate(bench, wanted)
+
+
+def test_a_counter_that_stands_opens_the_relays_and_keeps_them_open_until_it_runs_again() -> None:
+    wiper = WiperUnderTest(load_bench("protected"))
+    wiper.send("RelayCommand", RelayOn=1)
+    wiper.run(0.1)
+    with wiper.fault("counter_stuck", message="RelayCommand"):
+        wiper.run(0.6)
+        wiper.expect.always("relay_on", equals="off", until=wiper.time_s + 1.2)
+        wiper.run(1.2)
+    assert wiper.judge() == []
+    wiper.run(0.11)
+    assert wiper["relay_on"] == 1.0

@@ -8,12 +8,13 @@ from typing import Any
 import pytest
 
 from hilplant import resources
-from hilplant.bench import Bench, load_bench
+from hilplant.bench import Bench
 from hilplant.ecu import node, relay_controller
 from hilplant.ecu.chart import EXITS, SPEEDS, Phase
 from hilplant.ecu.vocabulary import Fault
 from hilplant.simulation.scenario import load_scenario
 from hilplant.testing.scenario_test import run_virtually
+from hilplant.testing.suite import DEFAULT_BENCH, Benches
 from hilplant.testing.words import lines_of
 
 SUITE = resources.shipped("config", "tests")
@@ -21,13 +22,14 @@ FILES = sorted(SUITE.glob("*.yaml"))
 
 
 @pytest.fixture(scope="module")
-def bench() -> Bench:
-    return load_bench("default")
+def benches() -> Benches:
+    return Benches()
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_the_stand_in_ecu_passes(path: Path, bench: Bench) -> None:
+def test_the_stand_in_ecu_passes(path: Path, benches: Benches) -> None:
     scenario = load_scenario(path)
+    bench = benches.named(scenario.bench or DEFAULT_BENCH)
     assert scenario.requirement, f"{path.name} names no requirement"
     done = run_virtually(scenario, bench)
     assert done.ruling == "pass", "\n".join(lines_of(done))
@@ -87,9 +89,21 @@ def ignores_crc(patch: pytest.MonkeyPatch, bench: Bench) -> Bench:
     return bench
 
 
+def ignores_counter(patch: pytest.MonkeyPatch, bench: Bench) -> Bench:
+    from hilplant.bus.protection import Checker, FrameCheck
+
+    own = Checker.check
+    patch.setattr(
+        Checker,
+        "check",
+        lambda self, data: FrameCheck.OK if (found := own(self, data)) is FrameCheck.WRONG_COUNTER else found,
+    )
+    return bench
+
+
 PAUSES = tuple(Phase(f"pause_{number}") for number in range(1, 7))
-#: A bug, and the shipped test that finds it; None where none does.
-BUGS: dict[str, tuple[Seed, str | None]] = {
+#: A bug, and the shipped test that finds it.
+BUGS: dict[str, tuple[Seed, str]] = {
     "wrong pause": (setting(pauses_s=(1.0, 2.0, 4.5, 7.0, 12.0, 18.0)), "09_intermittent_3"),
     "interval switch ignored": (setting(pauses_s=(1.0,) * 6), "08_intermittent_2"),
     "off stops at once": (exits((Phase.SLOW, Phase.FAST), to(Phase.WAIT, Phase.OFF)), "04_park_from_slow"),
@@ -120,13 +134,18 @@ BUGS: dict[str, tuple[Seed, str | None]] = {
     ),
     "drives without end": (setting(turn_timeout_s=1e9), "26_creeps_off_park"),
     "relay command too seldom": (sends_seldom, "27_bus_timing"),
-    "deaf to a silent park switch": (deaf_to_silence, None),
-    "wrong checksums are taken": (ignores_crc, None),
+    "deaf to a silent park switch": (deaf_to_silence, "38_park_switch_silent"),
+    "wrong checksums are taken": (ignores_crc, "39_park_switch_wrong_checksum"),
+    "a counter that stands is taken": (ignores_counter, "40_park_switch_stuck_counter"),
+    "a park contact that chatters is driven on": (setting(bounce_edges=10**9), "32_park_contact_chatters"),
+    "a contact that never opens is waited for": (setting(leave_timeout_s=1e9), "30_park_contact_stuck_closed"),
+    "a bounce counts as an opening": (setting(debounce_s=0.0), "31_park_contact_bounces"),
 }
 
 
-@pytest.mark.parametrize("name", [name for name, (_, found_by) in BUGS.items() if found_by])
-def test_a_seeded_bug_is_found(name: str, bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("name", BUGS)
+def test_a_seeded_bug_is_found(name: str, benches: Benches, monkeypatch: pytest.MonkeyPatch) -> None:
     seed, found_by = BUGS[name]
-    done = run_virtually(load_scenario(SUITE / f"{found_by}.yaml"), seed(monkeypatch, bench))
+    scenario = load_scenario(SUITE / f"{found_by}.yaml")
+    done = run_virtually(scenario, seed(monkeypatch, benches.named(scenario.bench or DEFAULT_BENCH)))
     assert done.ruling == "fail", f"{name}: {done.ruling}"
