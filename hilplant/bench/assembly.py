@@ -137,7 +137,8 @@ def _built(source: Source, description: BenchDescription | None) -> tuple[Bench 
     bench, spot = None, Spot()
     if description is not None:
         bench = build_bench(spot, description, source.path)
-        if bench is not None and not spot.findings and not source.reading.problems:
+        errors = any(finding.severity == "error" for finding in spot.findings)
+        if bench is not None and not errors and not source.reading.problems:
             note_doubts(spot, description, bench.plant)
             note_one_way(spot.inner("bus"), bench.commands)
         source.reading.keep(source.document, spot.findings)

@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 from hilplant.bench.bus_description import BusSection, CommandEntry, InterfaceSection, ReceivedEntry, SentEntry
 from hilplant.bench.database import Database, read_database
-from hilplant.bench.mapping import MappedMessage, map_message
+from hilplant.bench.mapping import MappedMessage, framed, map_message
 from hilplant.bench.timing import sending, timeout_ns
 from hilplant.bench.values import signal_values
 from hilplant.bus.codec import ReceivedMessage, SentMessage, received_message, sent_message
@@ -54,6 +54,7 @@ class MessageBuilder:
         message = self.database.message(spot)
         if message is None or entry is None:
             return None
+        message = framed(spot, message, entry)
         mapped = map_message(spot, message, entry, self.signals[self.first :])
         timeout = timeout_ns(spot, message, entry)
         if mapped is None:
@@ -66,6 +67,7 @@ class MessageBuilder:
         message = self.database.message(spot)
         if message is None or entry is None:
             return None
+        message = framed(spot, message, entry)
         mapped = map_message(spot, message, entry, self.signals[self.first :])
         timing = sending(spot, message, entry, self.step_ns, self.signals[self.first :])
         if mapped is None:
@@ -84,6 +86,7 @@ def build_bus(spot: Spot, bus: BusSection, step_ns: int) -> Bus:
     database = read_database(spot.inner("database"), bus.database)
     if database is None:
         return Bus(interface, safe)
+    database.warn_of_left_out(spot.inner("database"))
     commanded, reported = MessageBuilder(database, INPUTS), MessageBuilder(database, PUBLISHED, step_ns=step_ns)
     received = [commanded.received(spot.inner("receive", name), entry) for name, entry in receive.items()]
     sent = [reported.sent(spot.inner("send", name), entry) for name, entry in send.items()]

@@ -172,6 +172,17 @@ _CONDITIONS = "flag of the plant: the signals of the message that decide it"
 _SIGNALS = "signal of the database: what it is to the plant"
 
 
+_FD = "whether its frames are FD; as in the database when left out, and FD beyond 8 bytes"
+_BYTES = "length of its frames where it is longer than in the database; the rest is padding, sent as 0"
+
+
+class FrameEntry(Checked):
+    """What kind of frame carries a message, where the database does not say."""
+
+    fd: bool | None = Field(default=None, description=_FD)
+    bytes: Annotated[int, Field(ge=1, le=64)] | None = Field(default=None, description=_BYTES)
+
+
 def _of_a_state(what: str) -> Any:
     return Field(default=None, ge=0, description=f"{what}, as in the system description")
 
@@ -217,7 +228,7 @@ class ProtectionSection(Checked):
         return self.model_dump(exclude_unset=True)
 
 
-class ReceivedEntry(Checked):
+class ReceivedEntry(FrameEntry):
     """A message that is taken in; without `timeout_ms` it may stay away for ten cycle times."""
 
     holes_inside: ClassVar[bool] = True
@@ -246,7 +257,7 @@ class ReceivedEntry(Checked):
         return [*lines, *((name, ("conditions", name)) for name in self.conditions or {})]
 
 
-class SentEntry(Checked):
+class SentEntry(FrameEntry):
     """A message that is sent; by default at the database's cycle time."""
 
     holes_inside: ClassVar[bool] = True

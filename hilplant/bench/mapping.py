@@ -4,13 +4,15 @@ What the plant receives, the stand-in ECU sends, with the same mapping read the 
 is kept in a form that both are built from.
 """
 
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hilplant.bench.bus_description import ConditionEntry, ReceivedEntry, SentEntry, SignalEntry
+from hilplant.bench.bus_description import ConditionEntry, FrameEntry, ReceivedEntry, SentEntry, SignalEntry
 from hilplant.bus.codec import Mapped
 from hilplant.bus.flag_conditions import ConditionTerm, FlagCondition, link_condition
+from hilplant.bus.frame_layout import FD_LENGTHS
 from hilplant.bus.mapping import MappingError, SignalMapping, link
 from hilplant.bus.protection import Protection, ProtectionError
 from hilplant.checked_yaml.problems import suggestion
@@ -25,6 +27,17 @@ class MappedMessage:
     message: Any
     mappings: tuple[Mapped, ...]
     protection: Protection | None
+
+
+def framed(spot: Spot, message: Any, entry: FrameEntry) -> Any:
+    """Return the message as its frames are on the bus: classic or FD, and padded to a length that frames have."""
+    on_bus = copy.copy(message)
+    on_bus.is_fd = message.is_fd if entry.fd is None else entry.fd
+    fitting = (length for length in FD_LENGTHS if length >= message.length)
+    on_bus.length = entry.bytes or (next(fitting, message.length) if on_bus.is_fd else message.length)
+    if on_bus.length < message.length:
+        spot.note("bytes", text=f"{message.name} has {message.length} bytes in the database, so never {entry.bytes}")
+    return on_bus
 
 
 def map_message(

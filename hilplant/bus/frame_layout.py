@@ -22,11 +22,17 @@ def check_message(message: Message) -> None:
     """Refuse messages that are not one frame."""
     if message.is_container:
         raise MappingError(message.name, None, "it is a container of other messages, which is not supported")
+    if (secured := getattr(message.autosar, "secoc", None)) is not None:
+        text = f"its frames are authenticated by SecOC ({secured.auth_algorithm_name or 'unknown algorithm'})"
+        raise MappingError(message.name, None, f"{text}, which is not supported")
+    if message.protocol == "j1939" and message.length > CLASSIC_BYTES:
+        text = f"J1939 sends its {message.length} bytes in several frames, which is not supported"
+        raise MappingError(message.name, None, text)
     if message.is_fd and message.length not in FD_LENGTHS:
         text = f"no FD frame has {message.length} bytes; there are {', '.join(map(str, FD_LENGTHS))}"
         raise MappingError(message.name, None, text)
     if not message.is_fd and message.length > CLASSIC_BYTES:
-        text = f"{message.length} bytes need an FD frame, and the database calls it a classic one"
+        text = f"{message.length} bytes need an FD frame, and it is called a classic one"
         raise MappingError(message.name, None, text)
 
 

@@ -134,11 +134,18 @@ def test_a_message_without_a_cycle_time_must_say_how_long_it_may_stay_away(tmp_p
     assert "timeout_ms is missing" in the_mistake(tmp_path, text)
 
 
-def test_a_database_that_is_broken_is_told_at_its_own_line(tmp_path: Path) -> None:
+def test_a_mapped_message_that_is_broken_is_told_with_its_line(tmp_path: Path) -> None:
     lines = DATABASE.splitlines()
     number = next(index for index, line in enumerate(lines, start=1) if "SG_ RelayOn" in line)
     lines[number - 1] = lines[number - 1].replace("0|1@1+", "0|1@")
     (tmp_path / "own.dbc").write_text("\n".join(lines))
+    said = f"message 'RelayCommand' cannot be read: its syntax is not that of a DBC at line {number}"
+    assert said in the_mistake(tmp_path, "bus: {database: own.dbc}\n")
+
+
+def test_a_database_that_is_broken_is_told_at_its_own_line(tmp_path: Path) -> None:
+    (tmp_path / "own.dbc").write_text(DATABASE.replace("BU_:", "BU_;"))
+    number = next(index for index, line in enumerate(DATABASE.splitlines(), start=1) if "BU_:" in line)
     assert the_mistake(tmp_path, "bus: {database: own.dbc}\n").startswith(f"own.dbc:{number}: ")
 
 
