@@ -38,6 +38,8 @@ class ActingFaults:
         self.edges: list[tuple[int, str, bool]] = []
         self._there: dict[Course, bool] = {}
         self._next_tick = 0.0
+        #: Whether the parameters have always been those of the bench.
+        self.parameters_kept = True
 
     def insert(self, inserted: Inserted) -> Course:
         """Insert a fault; its times count from the first tick.
@@ -88,6 +90,7 @@ class ActingFaults:
 
     def _go_on(self, tick: int, row: Row | None) -> dict[int, float]:
         changes = self._player.changes(tick, row)
+        self.parameters_kept &= not changes
         self._next_tick = self._player.next_change(tick)
         for course, there in self._there.items():
             if (course.level > 0.0) is not there:

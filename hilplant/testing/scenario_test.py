@@ -33,7 +33,7 @@ class ScenarioTest:
     """A scenario that was run, with its evidence, and what came of each expectation.
 
     `rerun` is the command line that does it again; `record` writes the run to a file where it is not from one. `faults`
-    are the times at which faults came and went, by their names.
+    are the times at which faults came and went, by their names; `replays` is false where they have changed the plant.
     """
 
     scenario: Scenario
@@ -45,6 +45,7 @@ class ScenarioTest:
     rerun: str
     record: Callable[[Path], None] | None = None
     faults: Mapping[str, float] = field(default_factory=dict)
+    replays: bool = True
 
     @property
     def name(self) -> str:
@@ -69,7 +70,7 @@ def run_virtually(
     options = (f" --bench {bench_name}" if bench_name else "") + ("" if stand_in else " --ecu external")
     rerun = f"hilplant test {scenario.path}{options}"
     done = judged(scenario, bench.name, virtual.evidence(), database, expectations, rerun)
-    return replace(done, record=virtual.record, faults=virtual.faults.marks())
+    return replace(done, record=virtual.record, faults=virtual.faults.marks(), replays=virtual.replays)
 
 
 def judge_recording(path: Path, scenario_name: str, bench_name: str | None = None) -> ScenarioTest:

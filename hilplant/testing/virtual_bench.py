@@ -9,6 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.bench.assembly import initial_state
 from hilplant.bus.codec import SentMessage
@@ -48,13 +49,15 @@ class VirtualBench:
         if scenario is not None and scenario.initial:
             row = initial_state(bench.parameters, bench.initial | scenario.initial)
             bench = replace(bench, state_row=row)
-        bench = replace(bench, parameter_row=bench.parameter_row.copy())  # faults change it
         self.bench, self.bus, self.tape = bench, InMemoryBus(), Tape()
         self.faults = ActingFaults(bench, self.bus.end())
         for each in inserted(scenario.faults, bench.step_ns / SECOND_NS) if scenario is not None else ():
             self.faults.insert(each)
         self._stalk = scenario.stalk if scenario is not None else ()
-        self._loop = build_loop(bench, self.faults.transport, VirtualClock(), cast("Ring", self.tape))
+        stepped = replace(bench, parameter_row=bench.parameter_row.copy())  # faults change it
+        self._loop = build_loop(stepped, self.faults.transport, VirtualClock(), cast("Ring", self.tape))
+        # the row that the loop steps with: one of its own, where it has one
+        self._parameters: Floats = getattr(self._loop, "_parameters", stepped.parameter_row)
         self._changes = {} if scenario is None else _changes(scenario, bench)
         commanded = scenario is not None and bool(_RELAYS & set(scenario.entries))
         self._commander = _Commander(bench, self.bus) if commanded else None
@@ -84,7 +87,7 @@ class VirtualBench:
         if self._commander is not None:
             self._commander.send(now_ns)
         for index, value in self.faults.begin(tick, self._seen()).items():
-            self.bench.parameter_row[index] = value
+            self._parameters[index] = value
         self._loop.tick(now_ns)
         if self.ecu is not None and tick % self._poll_ticks == 0:
             self.ecu.poll(now_ns, stalk_at(self._stalk, now_ns / SECOND_NS))
@@ -111,6 +114,11 @@ class VirtualBench:
         frames = self.tape.frames
         places = np.array([bus_ns // self.bench.step_ns for _, bus_ns, _, _ in frames], np.int64)
         return Evidence(self.bench.step_ns, self.tape.read_rows(), places, [frame for _, _, frame, _ in frames])
+
+    @property
+    def replays(self) -> bool:
+        """Whether a recording of this run can be replayed: it does not hold what faults do to the plant."""
+        return self.faults.parameters_kept
 
     def record(self, path: Path) -> None:
         """Write what has been so far as a recording, over a file that is there."""

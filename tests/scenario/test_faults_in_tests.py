@@ -7,6 +7,8 @@ import pytest
 
 from hilplant.bench import Bench, load_bench
 from hilplant.failure import Failure
+from hilplant.recording.replay import replay
+from hilplant.signals import INPUT_INDEX
 from hilplant.simulation.run import simulate
 from hilplant.simulation.scenario import Scenario, load_scenario
 from hilplant.testing.virtual_bench import VirtualBench
@@ -100,3 +102,18 @@ def test_a_counter_that_stands_opens_the_relays_and_keeps_them_open_until_it_run
     assert wiper.judge() == []
     wiper.run(0.11)
     assert wiper["relay_on"] == 1.0
+
+
+def test_a_recording_with_faults_of_the_bus_replays(bench: Bench, tmp_path: Path) -> None:
+    wiper = WiperUnderTest(bench)
+    wiper.send("RelayCommand", RelayOn=1)
+    wiper.insert_fault("frames_lost", direction="to plant", share=0.5, seed=2)
+    wiper.insert_fault("value_wrong", message="RelayCommand", signal="RelayFast", value=1, at=0.1, for_=0.3)
+    wiper.run(0.6)
+    wiper.record(tmp_path / "run.hilrec")
+    assert wiper.virtual.tape.read_rows()[:, 2 + INPUT_INDEX["relay_fast"]].any()
+    assert wiper.virtual.replays
+    assert replay(tmp_path / "run.hilrec").equal
+    with wiper.fault("supply_open"):
+        wiper.run(0.01)
+    assert not wiper.virtual.replays, "what a fault does to the plant is not in the recording"
