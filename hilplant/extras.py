@@ -22,6 +22,7 @@ EXTRAS = {
     "recording": Extra("recordings and Parquet files", ("pyarrow",)),
     "testing": Extra("tests of an ECU", ("jinja2", "matplotlib", "pyarrow")),
     "train": Extra("trained models and their reports", ("matplotlib", "threadpoolctl")),
+    "udp": Extra("CAN frames by UDP multicast", ("msgpack",)),
 }
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from hilplant.bench.bus import build_bus
 from hilplant.bench.description import BenchDescription, LoopSettings
-from hilplant.bench.doubts import note_doubts
+from hilplant.bench.doubts import note_doubts, offer_protection
 from hilplant.bench.ecu_description import EcuSettings
 from hilplant.bench.ecu_messages import EcuMessages, build_ecu_messages
 from hilplant.bench.ecu_side import EcuSide, build_ecu_side, note_one_way
@@ -140,6 +140,7 @@ def _built(source: Source, description: BenchDescription | None) -> tuple[Bench 
         errors = any(finding.severity == "error" for finding in spot.findings)
         if bench is not None and not errors and not source.reading.problems:
             note_doubts(spot, description, bench.plant)
+            offer_protection(spot.inner("bus"), bench.commands, bench.reports)
             note_one_way(spot.inner("bus"), bench.commands)
         source.reading.keep(source.document, spot.findings)
     problems = source.reading.sorted_problems()

@@ -1,6 +1,10 @@
 """What can be built and is yet doubtful: numbers that no wiper has, and settings that take a protection away."""
 
+import re
+from collections.abc import Iterable
+
 from hilplant.bench.description import BenchDescription
+from hilplant.bench.mapping import MappedMessage
 from hilplant.bench.parts import MotorFile
 from hilplant.bench.plant import Plant
 from hilplant.bench.wiper import SIDES
@@ -63,3 +67,18 @@ def _doubt_safety(spot: Spot, description: BenchDescription) -> None:
         if written.timeout_ms == 0 and relays:
             text = f"{name} commands {' and '.join(relays)} and may stay away for ever; give it a timeout_ms above 0"
             spot.warn("receive", name, "timeout_ms", text=text)
+
+
+def offer_protection(spot: Spot, commands: Iterable[MappedMessage], reports: Iterable[MappedMessage]) -> None:
+    """Note as warnings at the bus's spot which messages the database calls protected, and the bench does not."""
+    for direction, messages in (("receive", commands), ("send", reports)):
+        for mapped in messages:
+            e2e = getattr(mapped.message.autosar, "e2e", None)
+            if e2e is None or mapped.protection is not None:
+                continue
+            number = re.search(r"([0-9]+)[A-Z]*$", e2e.category or "")
+            profile = f"profile: {int(number[1])}" if number else f"profile: ... ('{e2e.category}' in the file)"
+            ids = e2e.data_ids or []
+            data_id = f"data_id: {ids[0]}" if len(ids) == 1 else f"data_id_list: {ids}"
+            text = f"the database protects it end to end: 'protection: {{{profile}, {data_id}}}' would do it too"
+            spot.warn(direction, mapped.message.name, text=f"{mapped.message.name}: {text}")

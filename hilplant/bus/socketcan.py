@@ -189,7 +189,7 @@ def _connect(channel: str) -> socket.socket:
     except (OSError, AttributeError) as error:
         raise TransportError(
             f"this system offers no CAN sockets ({error}); as root: modprobe can-raw; "
-            "or use the interface 'virtual', which needs none"
+            "or run the command in a system of its own that has them: hilplant vcan COMMAND"
         ) from error
     try:
         opened.setsockopt(socket.SOL_CAN_RAW, socket.CAN_RAW_FD_FRAMES, 1)

@@ -13,6 +13,7 @@ from hilplant.bus.frame import Frame
 from hilplant.bus.interface import SendResult, Transport, TransportError
 from hilplant.bus.lean_import import without_asammdf
 from hilplant.bus.socketcan import open_socketcan, wrong_settings
+from hilplant.extras import missing, remedy
 from hilplant.units import SECOND_NS
 
 with without_asammdf():
@@ -46,6 +47,11 @@ def open_transport(arguments: dict[str, Any]) -> Transport:
     if interface == "socketcan":
         return open_socketcan(arguments)
     return PythonCan(arguments)
+
+
+def interface_needs_udp(arguments: dict[str, Any]) -> bool:
+    """Say whether an interface needs an optional library that is not installed."""
+    return arguments.get("interface") == "udp_multicast" and bool(missing("udp"))
 
 
 class PythonCan:
@@ -129,7 +135,8 @@ def _open(arguments: dict[str, Any]) -> can.BusABC:
     except Exception as error:  # drivers raise whatever their libraries raise
         reason = " ".join(str(error).split()) or type(error).__name__
         given = ", ".join(f"{name}: {value}" for name, value in arguments.items() if name != "interface")
-        reasons = "; ".join([reason, *said.lines])
+        advice = [f"it needs msgpack: {remedy('udp')}"] if interface_needs_udp(arguments) else []
+        reasons = "; ".join([reason, *said.lines, *advice])
         raise TransportError(
             f"the interface {arguments['interface']} ({given or 'no arguments'}) cannot be opened: {reasons}"
         ) from error

@@ -260,5 +260,5 @@ def test_a_classic_interface_is_refused_where_fd_is_wanted(kernel: Kernel, tmp_p
 
 def test_a_kernel_without_can_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(socket, "socket", _no_can)
-    with pytest.raises(TransportError, match=r"no CAN sockets .* modprobe can-raw; or use the interface 'virtual'"):
+    with pytest.raises(TransportError, match=r"no CAN sockets .* modprobe can-raw; or run .* hilplant vcan COMMAND"):
         open_transport(ARGUMENTS)

@@ -47,6 +47,11 @@ def _say_start(bench: Bench, voice: Voice, privileges: list[Privilege]) -> None:
     missing = [f"  without {p.name}: {p.mend}" for p in privileges if not p.granted]
     step_ms = bench.step_ns / MILLISECOND_NS
     voice.say(f"{bench.name} serves on {interface}, a tick every {step_ms:g} ms; Ctrl-C ends it")
+    if bench.interface.get("interface") == "virtual":
+        voice.say(
+            "  interface virtual: no other process can reach it; hilplant vcan, or udp_multicast, can be reached",
+            err=True,
+        )
     for line in missing:
         voice.say(line, err=True)
     if missing:
