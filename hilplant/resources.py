@@ -1,5 +1,6 @@
 """Where the shipped files are: inside the package once installed, beside it in a checkout."""
 
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
@@ -28,10 +29,11 @@ def find(reference: str, beside: Path) -> Path | None:
 
     The folder `beside` comes first, then the shared ones.
     """
-    for folder in (beside, *shared_folders()):
-        path = folder / Path(reference).expanduser()
-        if path.is_file():
-            return path
+    with suppress(OSError, RuntimeError):  # a name that is too long for the system; the home of nobody
+        for folder in (beside, *shared_folders()):
+            path = folder / Path(reference).expanduser()
+            if path.is_file():
+                return path
     return None
 
 

@@ -48,6 +48,7 @@ class MessageBuilder:
     signals: Sequence[Signal]
     first: int = 0
     step_ns: int = 1
+    timeout_ms: float | None = None
 
     def received(self, spot: Spot, entry: ReceivedEntry | None) -> Received | None:
         """Build a message that is taken in."""
@@ -56,7 +57,7 @@ class MessageBuilder:
             return None
         message = framed(spot, message, entry)
         mapped = map_message(spot, message, entry, self.signals[self.first :])
-        timeout = timeout_ns(spot, message, entry)
+        timeout = timeout_ns(spot, message, entry, self.timeout_ms)
         if mapped is None:
             return None
         settings = (self.signals, timeout, mapped.protection)
@@ -87,7 +88,10 @@ def build_bus(spot: Spot, bus: BusSection, step_ns: int) -> Bus:
     if database is None:
         return Bus(interface, safe)
     database.warn_of_left_out(spot.inner("database"))
-    commanded, reported = MessageBuilder(database, INPUTS), MessageBuilder(database, PUBLISHED, step_ns=step_ns)
+    commanded, reported = (
+        MessageBuilder(database, INPUTS, timeout_ms=bus.timeout_ms),
+        MessageBuilder(database, PUBLISHED, step_ns=step_ns),
+    )
     received = [commanded.received(spot.inner("receive", name), entry) for name, entry in receive.items()]
     sent = [reported.sent(spot.inner("send", name), entry) for name, entry in send.items()]
     commands = [pair for pair in received if pair is not None]

@@ -308,6 +308,9 @@ class BusSection(Container):
         default={}, description="messages that command the plant"
     )
     send: Annotated[dict[str, ReportEntry], MayBeHole] = Field(default={}, description="messages that show the plant")
+    timeout_ms: Annotated[Milliseconds | None, MayBeHole] = Field(
+        default=None, description="that of messages that have none and no cycle time in the database"
+    )
     safe: InputValues = Field(
         default={}, description="what inputs become while commands are lost; relays open unless named"
     )

@@ -14,13 +14,17 @@ from hilplant.units import MILLISECOND_NS
 CYCLES_UNTIL_LOST = 10
 
 
-def timeout_ns(spot: Spot, message: Any, entry: ReceivedEntry) -> int:
-    """Return after how long without it a message counts as lost; 0 for a message that nobody supervises."""
+def timeout_ns(spot: Spot, message: Any, entry: ReceivedEntry, usual_ms: float | None = None) -> int:
+    """Return after how long without it a message counts as lost; 0 for a message that nobody supervises.
+
+    `usual_ms` is the bench's, for what has neither a timeout nor a cycle time.
+    """
     cycle_ms = message.cycle_time or 0
-    timeout_ms = CYCLES_UNTIL_LOST * cycle_ms if entry.timeout_ms is None else entry.timeout_ms
-    if entry.timeout_ms is None and not cycle_ms:
+    by_itself_ms = CYCLES_UNTIL_LOST * cycle_ms if cycle_ms else usual_ms or 0.0
+    timeout_ms = by_itself_ms if entry.timeout_ms is None else entry.timeout_ms
+    if entry.timeout_ms is None and not cycle_ms and usual_ms is None:
         text = f"timeout_ms is missing: the database gives {message.name} no cycle time; 0 is unsupervised"
-        spot.note(text=text)
+        spot.note(text=f"{text}; bus.timeout_ms is for all")
     if 0.0 < timeout_ms <= cycle_ms:
         text = f"timeout_ms must be longer than the message's cycle time of {cycle_ms} ms, not {timeout_ms:g}"
         spot.note("timeout_ms", text=text)

@@ -20,6 +20,7 @@ class Incoming:
         self.refused_ns: int | None = None  # when the last frame came that failed its check
         self.late = False
         self.is_missing = True  # as last judged
+        self.rejected: dict[int, float] = {}  # the last value beyond its limits, by target
         self._switches: tuple[object, ...] = ()
         self._before: tuple[object, ...] = ()
         self._changed_ns = 0
@@ -37,6 +38,12 @@ class Incoming:
     def is_stale(self, arrived_ns: int, now_ns: int) -> bool:
         """Whether a frame that arrived then is of no use any more."""
         return 0 < self.message.timeout_ns < now_ns - arrived_ns
+
+    def reject(self, decoded: Sequence[float | None]) -> None:
+        """Remember which values of a frame were beyond their limits."""
+        for target, value, limit in zip(self.message.targets, decoded, self.message.limits, strict=True):
+            if value_fault((value,), (limit,)) is not None and value is not None:
+                self.rejected[target] = value
 
     def takes_back(self, decoded: Sequence[float | None], arrived_ns: int) -> bool:
         """Note the flags and choices of a frame, and return whether they undo at once what the frame before changed."""

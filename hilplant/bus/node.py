@@ -135,6 +135,11 @@ class Node:
         self._pending.extend([self._build(outgoing, values) for outgoing in self._outgoing])
         self._flush()
 
+    def rejected(self) -> dict[tuple[str, int], float]:
+        """Return the last value beyond its limits, by message and target."""
+        state = self._incoming.values()
+        return {(each.message.name, target): value for each in state for target, value in each.rejected.items()}
+
     def silent(self, target: int) -> bool:
         """Whether the message that sets a value has not come within its timeout; one that nobody supervises is not."""
         return any(target in incoming.message.targets for incoming in self._supervised if incoming.is_missing)
@@ -175,6 +180,8 @@ class Node:
             if incoming.is_stale(arrived_ns, now_ns):
                 return "stale_frame"
             self._accept(incoming, decoded, arrived_ns)
+        else:
+            incoming.reject(decoded)
         return cause
 
     def _foreign(self, key: tuple[int, bool]) -> str | None:

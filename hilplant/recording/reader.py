@@ -169,8 +169,12 @@ def _description(path: Path) -> RunDescription:
         raise Failure(f"{path}: not a recording of hilplant")
     if metadata["format"] != FORMAT_VERSION:
         raise Failure(f"{path}: has format {metadata['format']}, this version reads format {FORMAT_VERSION}")
-    if found.names != schema().names:
-        unknown = sorted(set(found.names) ^ set(schema().names))
+    try:
+        names = found.names
+    except UnicodeDecodeError as error:
+        raise Failure(f"{path}: a column's name is damaged") from error
+    if names != schema().names:
+        unknown = sorted(set(names) ^ set(schema().names))
         raise Failure(f"{path}: has other columns than this version's: {', '.join(unknown) or 'another order'}")
     if found.types != schema(stored=True).types:
         raise Failure(f"{path}: has columns of other types than this version's")

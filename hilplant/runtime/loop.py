@@ -185,6 +185,10 @@ class Loop:
         plant_tick(self._state.copy(), plant.input_row.copy(), plant.parameter_row, plant.tables, outputs)
         self._node.rehearse([*outputs.tolist(), *([0.0] * len(STATUS))])
 
+    def rejected(self) -> dict[str, float]:
+        """Return the last value of each input that was out of range, by `Message.input`."""
+        return {f"{message}.{INPUTS[target].name}": value for (message, target), value in self._node.rejected().items()}
+
     def counts(self) -> dict[str, int]:
         """Return the node's counts by cause."""
         status = self._status_values(STOPPED)

@@ -88,6 +88,7 @@ class Summary:
     recording_complete: bool = True
     first_tick_monotonic_ns: int = 0
     counts: dict[str, int] = field(default_factory=dict)
+    out_of_range: dict[str, float] = field(default_factory=dict)
     privileges: list[Privilege] = field(default_factory=list)
 
     @property
@@ -194,5 +195,6 @@ def _summary(loop: Loop, privileges: list[Privilege]) -> Summary:
         fell_behind=loop.lost_time.exceeded,
         first_tick_monotonic_ns=loop.progress.first_tick_ns,
         counts=loop.counts(),
+        out_of_range=loop.rejected(),
         privileges=privileges,
     )

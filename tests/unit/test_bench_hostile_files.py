@@ -6,7 +6,7 @@ import pytest
 
 from hilplant.bench import check_bench
 from hilplant.checked_yaml.yaml_reader import MOST_VALUES, read_text
-from hilplant.resources import shipped
+from hilplant.resources import find, shipped
 
 HEAD = "extends: default.yaml\nname: x\n"
 
@@ -92,3 +92,8 @@ def test_a_number_of_the_database_beyond_every_number_is_one_line(tmp_path: Path
     (tmp_path / "bench.yaml").write_text(f"{HEAD}bus: {{database: own.dbc}}\n")
     (problem,) = check_bench(tmp_path / "bench.yaml")
     assert "is beyond every number" in problem.text
+
+
+@pytest.mark.parametrize("name", ["9" * 300, "9" * 5000, "~nobody_of_that_name/x.yaml", "a\0b"])
+def test_a_file_name_that_no_system_has_is_no_file(name: str) -> None:
+    assert find(name, Path()) is None

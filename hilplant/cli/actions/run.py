@@ -4,6 +4,7 @@ from dataclasses import replace
 from functools import partial
 
 from hilplant.bench import Bench, load_bench
+from hilplant.bus.mapping import NO_CHOICE
 from hilplant.cli.voice import Voice
 from hilplant.ecu.loop_controller import Inside, seated
 from hilplant.failure import Failure
@@ -66,6 +67,9 @@ def _say_end(summary: Summary, record: RecordTo | None, voice: Voice) -> None:
     faults = {name: count for name, count in summary.counts.items() if count and name not in _NO_FAULTS}
     if faults:
         voice.say("faults: " + ", ".join(f"{name} {count}" for name, count in faults.items()))
+    for name, value in summary.out_of_range.items():
+        said = "a value without a choice" if value == NO_CHOICE else f"{value:g}"
+        voice.say(f"  out of range: {name}, last {said}")
     if record is not None and summary.recording_complete:
         voice.say(f"recorded to {record.path}" + (", in parts" if record.rotation.in_parts else ""))
     if summary.stopped_by_overrun:
