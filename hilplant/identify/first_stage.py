@@ -26,14 +26,22 @@ from hilplant.identify.transfer_function import (
     coefficients,
     load_constant,
 )  # fmt: skip
-from hilplant.measurements.alignment import voltage_steps
+from hilplant.measurements.alignment import resting, voltage_steps
 from hilplant.measurements.measurement import Mask, Measurement, Samples, running
 from hilplant.measurements.park import rising_edges
-from hilplant.motor_bench.bench_measurements import MotorFriction, back_emf_constant, mean_of, no_load_friction
+from hilplant.motor_bench.bench_measurements import (
+    MotorFriction,
+    back_emf_constant,
+    mean_of,
+    no_load_friction,
+    quantity,
+)
 from hilplant.motor_bench.bench_measurements import SteadyRun as _Turn
 
 #: How much of the data is used around each step: long for the electrical time constant, short for the load [s].
 BEFORE_S, WINDOW_S = 0.01, 0.04
+#: Standard error of a turn's time in samples: each of its two park edges lies anywhere between two of them.
+EDGES_SAMPLES = (2.0 / 12.0) ** 0.5
 
 
 class ModeResult(NamedTuple):
@@ -102,7 +110,11 @@ def _windows(data: Measurement, mask: Mask, steps: list[int]) -> list[slice]:
 
 def _mode(data: Measurement, mode: str, windows: list[slice], turns: list[_Turn], drag_n_m_s: float) -> ModeResult:
     current = _bridged(data.current_a, data.valid)
-    stretches = [Stretch(data.voltage_v[part], current[part], data.valid[part]) for part in windows]
+    rest = resting(data.voltage_v, data.period_s)
+    stretches = [
+        Stretch(data.voltage_v[part], current[part], data.valid[part], int(np.count_nonzero(rest[part])))
+        for part in windows
+    ]
     try:
         found = fit(stretches, data.period_s, friction=True)
     except Failure as error:
@@ -130,7 +142,7 @@ def _sound(found: TransferFit) -> bool:
 
 
 def _load(turns: list[_Turn], motor: Equivalent) -> MotorFriction | None:
-    speeds = [turn.speed_rad_s for turn in turns]
+    speeds = [quantity(turn.speed_rad_s).n for turn in turns]
     if max(speeds) - min(speeds) < 0.05 * max(speeds):
         return None
     return no_load_friction(turns, [motor.constant_v_s] * len(turns))
@@ -157,7 +169,8 @@ def _turns(data: Measurement, mask: Mask, gear_ratio: float) -> list[_Turn]:
     turns = []
     for begin, end in pairwise(rising_edges(data.park)):
         if np.all(mask[begin:end]) and np.all(data.valid[begin:end]):
-            speed = 2.0 * np.pi * gear_ratio / ((end - begin) * data.period_s)
+            seconds = quantity((end - begin) * data.period_s, EDGES_SAMPLES * data.period_s)
+            speed = 2.0 * np.pi * gear_ratio / seconds
             volts, amperes = (float(np.mean(values[begin:end])) for values in (data.voltage_v, data.current_a))
             turns.append(_Turn(volts, amperes, speed))
     return turns

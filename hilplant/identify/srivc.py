@@ -6,37 +6,45 @@ The regression uses the model's own current as instrument, so noise of the curre
 instrument are renewed until nothing changes. There, the output error is orthogonal to its own gradient.
 
 Beyond the thesis: any state at the start of a stretch is allowed for, and a constant torque (dry friction) may act
-while the motor turns: J dw/dt = K i - (b + gamma) w - T gives a third coefficient c = K T/(L J).
+while the motor turns: J dw/dt = K i - (b + gamma) w - T gives a third coefficient c = K T/(L J). Before it turns, and
+until the current is T/K, the shaft is held (`breakaway`).
 """
 
-import warnings
 from collections.abc import Sequence
-from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
-from scipy.signal import BadCoefficients, cont2discrete, lfilter
 
 from hilplant.failure import Failure
+from hilplant.identify.breakaway import torque_part
+from hilplant.identify.filters import filtered, free_answers, held_answer, stable
 from hilplant.identify.transfer_function import TransferFunction
 from hilplant.measurements.measurement import Mask, Samples
 
 #: Rounds until the relative change of all coefficients is below the tolerance; after the cap a search takes over.
 ROUNDS, TOLERANCE = 40, 1e-7
+#: Steps of a search, at most, and the largest a1 [1/s] and a0 [1/s^2] that it looks at.
+MOST_STEPS, HIGHEST = 50, (1e5, 1e9)
 #: The filter of the first round is 1/(s + FIRST_POLE)^2 [1/s]: between the two time constants of a wiper motor.
 FIRST_POLE_1_S = 150.0
 #: Errors are taken as correlated within a block of this length, and independent between blocks [s].
 BLOCK_S = 0.25
+#: The same where steps are few: some electrical time constants [s].
+COLOUR_S = 0.01
 
 
 class Stretch(NamedTuple):
-    """Samples without a gap, in one mode: voltage (held between samples), current, and which samples count."""
+    """Samples without a gap, in one mode: voltage (held between samples), current, and which samples count.
+
+    For the first `rest` samples the motor stands still at 0 V; 0: it turns.
+    """
 
     voltage_v: Samples
     current_a: Samples
     valid: Mask
+    rest: int = 0
 
 
 class TransferFit(NamedTuple):
@@ -70,7 +78,7 @@ def fit(stretches: Sequence[Stretch], period_s: float, friction: bool = False) -
     for count in range(1, ROUNDS + 1):
         last = theta
         theta = _round(stretches, period_s, friction, model, theta)
-        model = _stable(theta[:2])
+        model = stable(theta[:2])
         if last is not None and np.max(np.abs(theta[: 4 + friction] / last[: 4 + friction] - 1.0)) < TOLERANCE:
             return _result(stretches, period_s, friction, theta, count)
     return _result(stretches, period_s, friction, _searched(stretches, period_s, friction), ROUNDS)
@@ -81,10 +89,24 @@ def _searched(stretches: Sequence[Stretch], period_s: float, friction: bool) -> 
 
     Where the rounds do settle, it is at the same place.
     """
+    times = [(fast, slow) for fast in (0.002, 0.006) for slow in (0.01, 0.04)]
+    starts = [np.log([1.0 / fast + 1.0 / slow, 1.0 / (fast * slow)]) for fast, slow in times]
+    theta = _searched_from(starts, stretches, period_s, _torques(stretches, period_s, friction, None))
+    if friction and any(stretch.rest for stretch in stretches):
+        held = _torques(stretches, period_s, friction, theta)
+        theta = _searched_from([np.log(theta[:2])], stretches, period_s, held)
+    return theta
+
+
+def _searched_from(
+    starts: Sequence[Samples], stretches: Sequence[Stretch], period_s: float, torques: Sequence[Samples | None]
+) -> NDArray[np.float64]:
     current = np.concatenate([stretch.current_a[stretch.valid] for stretch in stretches])
 
     def exogenous(logs: Samples) -> NDArray[np.float64]:
-        rows = [_columns(stretch, period_s, friction, np.exp(logs)).voltage for stretch in stretches]
+        model = np.exp(logs)
+        pairs = zip(stretches, torques, strict=True)
+        rows = [_columns(stretch, period_s, torque, model).voltage for stretch, torque in pairs]
         wide = [_widened(row, place, len(rows)) for place, row in enumerate(rows)]
         return np.vstack([each[stretch.valid] for each, stretch in zip(wide, stretches, strict=True)])
 
@@ -92,10 +114,10 @@ def _searched(stretches: Sequence[Stretch], period_s: float, friction: bool) -> 
         columns = exogenous(logs)
         return np.asarray(current - columns @ np.linalg.lstsq(columns, current, rcond=None)[0], np.float64)
 
-    times = [(fast, slow) for fast in (0.002, 0.006) for slow in (0.01, 0.04)]
-    starts = [np.log([1.0 / fast + 1.0 / slow, 1.0 / (fast * slow)]) for fast, slow in times]
-    found = min((least_squares(misfit, start, diff_step=1e-4) for start in starts), key=lambda each: float(each.cost))
-    if not found.success or np.any(found.x > np.log([1e5, 1e9])):
+    bounds = [0.0, 0.0], np.log(HIGHEST)
+    tries = (least_squares(misfit, start, diff_step=1e-4, bounds=bounds, max_nfev=MOST_STEPS) for start in starts)
+    found = min(tries, key=lambda each: float(each.cost))
+    if not found.success or np.any(found.x > np.log(HIGHEST) - 0.01):
         raise Failure(
             "the transfer function cannot be told from these data: they excite the motor too little; record more steps "
             "of the voltage, switching on among them"
@@ -106,7 +128,7 @@ def _searched(stretches: Sequence[Stretch], period_s: float, friction: bool) -> 
 
 def simulated(function: TransferFunction, voltage_v: Samples, period_s: float) -> Samples:
     """Return the current [A] from rest for a voltage that is held between samples."""
-    return _held(np.array([function.b1, function.b0]), np.array([function.a1, function.a0]), voltage_v, period_s)
+    return held_answer(np.array([function.b1, function.b0]), np.array([function.a1, function.a0]), voltage_v, period_s)
 
 
 def _round(
@@ -114,14 +136,15 @@ def _round(
 ) -> NDArray[np.float64]:
     """One regression with the filter 1/A of `model`; the first one, without a model's current, is least squares."""
     left, right = [], []
-    rows = [_columns(stretch, period_s, friction, model) for stretch in stretches]
+    torques = _torques(stretches, period_s, friction, theta)
+    rows = [_columns(stretch, period_s, torque, model) for stretch, torque in zip(stretches, torques, strict=True)]
     for place, (stretch, columns) in enumerate(zip(stretches, rows, strict=True)):
         exogenous = _widened(columns.voltage, place, len(stretches))
         regressors = np.hstack([-columns.current, exogenous])
         instruments = regressors
         if theta is not None:
             modelled = exogenous @ theta[2:]
-            instruments = np.hstack([-_filtered(modelled, model, period_s, held=False), exogenous])
+            instruments = np.hstack([-filtered(modelled, model, period_s, held=False), exogenous])
         target = stretch.current_a - columns.current @ model
         left.append(instruments[stretch.valid].T @ regressors[stretch.valid])
         right.append(instruments[stretch.valid].T @ target[stretch.valid])
@@ -139,13 +162,20 @@ def _solved(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np
     return solution
 
 
-def _columns(stretch: Stretch, period_s: float, friction: bool, model: Samples) -> _Columns:
+def _torques(
+    stretches: Sequence[Stretch], period_s: float, friction: bool, theta: Samples | None
+) -> list[Samples | None]:
+    """Return the dry torque in each stretch in parts of T; None each where it is not asked for."""
+    return [torque_part(each.voltage_v, each.rest, period_s, theta) if friction else None for each in stretches]
+
+
+def _columns(stretch: Stretch, period_s: float, torque: Samples | None, model: Samples) -> _Columns:
     count = len(stretch.current_a)
-    blocks = [_filtered(stretch.voltage_v, model, period_s, held=True)]
-    if friction:
-        blocks.append(_filtered(np.ones(count), model, period_s, held=True)[:, 1:])
-    blocks.append(_free_answers(count, model, period_s))
-    return _Columns(np.hstack(blocks), _filtered(stretch.current_a, model, period_s, held=False))
+    blocks = [filtered(stretch.voltage_v, model, period_s, held=True)]
+    if torque is not None:
+        blocks.append(held_answer([0.0, 1.0], model, torque, period_s)[:, np.newaxis])
+    blocks.append(free_answers(count, model, period_s))
+    return _Columns(np.hstack(blocks), filtered(stretch.current_a, model, period_s, held=False))
 
 
 def _widened(columns: NDArray[np.float64], place: int, stretches: int) -> NDArray[np.float64]:
@@ -157,64 +187,16 @@ def _widened(columns: NDArray[np.float64], place: int, stretches: int) -> NDArra
     return wide
 
 
-def _filtered(values: Samples, model: Samples, period_s: float, held: bool) -> NDArray[np.float64]:
-    """Return s/A and 1/A of a signal that is held between samples, or else is a straight line between them."""
-    first = 0.0 if held else values[0]
-    answers = [_held(numerator, model, values, period_s, held) for numerator in ([1.0, 0.0], [0.0, 1.0])]
-    return np.column_stack(answers) if first == 0.0 else _from_level(values, model, period_s)
-
-
-def _from_level(values: Samples, model: Samples, period_s: float) -> NDArray[np.float64]:
-    """Filter a signal as if it had been at its first value for ever, so that no jump is seen at its start."""
-    first = values[0]
-    moved = [_held(numerator, model, values - first, period_s, False) for numerator in ([1.0, 0.0], [0.0, 1.0])]
-    return np.column_stack([moved[0], moved[1] + first / model[1]])
-
-
-def _held(
-    numerator: Samples | list[float], model: Samples, values: Samples, period_s: float, held: bool = True
-) -> Samples:
-    """Return a signal behind numerator/A; it is held between samples, or else a straight line between them."""
-    top, bottom = _discrete(tuple(numerator), tuple(model), period_s, held)
-    return np.asarray(lfilter(top, bottom, values), np.float64)
-
-
-@lru_cache(maxsize=64)
-def _discrete(numerator: tuple[float, ...], model: tuple[float, ...], period_s: float, held: bool) -> tuple[Any, Any]:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", BadCoefficients)  # a held input has a first coefficient of 0, as it must be
-        top, bottom, _ = cont2discrete((numerator, (1.0, *model)), period_s, method="zoh" if held else "foh")
-    return top.ravel(), bottom
-
-
-def _free_answers(count: int, model: Samples, period_s: float) -> NDArray[np.float64]:
-    """Return the answers of s/A and 1/A to an impulse at the start: what any state at the start decays with."""
-    roots = np.roots([1.0, model[0], model[1]]).astype(complex)
-    if abs(roots[0] - roots[1]) < 1e-6 * abs(roots[0]):
-        roots[1] *= 1.0 + 1e-6
-    times = np.arange(count) * period_s
-    first, second = np.exp(roots[0] * times), np.exp(roots[1] * times)
-    apart = roots[0] - roots[1]
-    return np.column_stack([((roots[0] * first - roots[1] * second) / apart).real, ((first - second) / apart).real])
-
-
-def _stable(denominator: Samples) -> Samples:
-    """Mirror roots of the filter into the stable half plane, away from its edge."""
-    roots = np.roots([1.0, denominator[0], denominator[1]])
-    mirrored = -np.maximum(np.abs(roots.real), 0.1) + 1j * roots.imag
-    polynomial = np.poly(mirrored).real
-    return np.array([polynomial[1], polynomial[2]])
-
-
 def _result(
     stretches: Sequence[Stretch], period_s: float, friction: bool, theta: NDArray[np.float64], count: int
 ) -> TransferFit:
     """Collect the coefficients and their covariance."""
     gradients, errors = [], []
-    for place, stretch in enumerate(stretches):
-        exogenous = _widened(_columns(stretch, period_s, friction, theta[:2]).voltage, place, len(stretches))
+    torques = _torques(stretches, period_s, friction, theta)
+    for place, (stretch, torque) in enumerate(zip(stretches, torques, strict=True)):
+        exogenous = _widened(_columns(stretch, period_s, torque, theta[:2]).voltage, place, len(stretches))
         modelled = exogenous @ theta[2:]
-        gradient = np.hstack([-_filtered(modelled, theta[:2], period_s, held=False), exogenous])
+        gradient = np.hstack([-filtered(modelled, theta[:2], period_s, held=False), exogenous])
         gradients.append(gradient[stretch.valid])
         errors.append((stretch.current_a - modelled)[stretch.valid])
     order = [2, 3, 0, 1, *([4] if friction else [])]
@@ -237,7 +219,27 @@ def _covariance(
         sums += [block.sum(axis=0) for block in np.array_split(gradient * error[:, None], count)]
     scatter = np.array(sums)
     if len(sums) <= 2 * len(information):
-        return noise
+        return _widened_by_colour(gradients, errors, period_s)
     blocks = inverse @ (scatter.T @ scatter) @ inverse * len(sums) / (len(sums) - len(information))
     widening = np.sqrt(np.maximum(1.0, np.diag(noise) / np.maximum(np.diag(blocks), 1e-300)))
     return np.asarray(blocks * np.outer(widening, widening), np.float64)
+
+
+def _widened_by_colour(
+    gradients: Sequence[NDArray[np.float64]], errors: Sequence[Samples], period_s: float
+) -> NDArray[np.float64]:
+    """Return the covariance from few steps: that of noise, widened in each direction where errors hang together.
+
+    Noise of the voltage comes through the motor, so that neighbouring errors are alike. In each singular direction
+    their sums over blocks of `COLOUR_S` are compared with what independent ones would give; the larger counts.
+    """
+    left, size, vectors = np.linalg.svd(np.vstack(gradients), full_matrices=False)
+    error = np.concatenate(errors)
+    variance = float(np.sum(error**2)) / max(1, len(error) - len(size))
+    block = max(1, round(COLOUR_S / period_s))
+    ends = np.cumsum([len(each) for each in errors])
+    starts = np.concatenate([np.arange(end - len(each), end, block) for end, each in zip(ends, errors, strict=True)])
+    sums = np.add.reduceat(left * error[:, np.newaxis], starts, axis=0)
+    along = np.maximum(1.0, np.sum(sums**2, axis=0) / variance)
+    widened = vectors.T * (np.sqrt(along) / np.maximum(size, 1e-10 * size[0]))
+    return np.asarray(variance * widened @ widened.T, np.float64)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from hilplant.measurements.measurement import Samples
+from hilplant.measurements.measurement import Mask, Samples
 
 #: The window about a step in which the current's answer is looked at [s].
 BEFORE_S, AFTER_S = 0.025, 0.04
@@ -31,19 +31,24 @@ class DelayEstimate(NamedTuple):
 
 
 def rest_offset(values: Samples, voltage_v: Samples, period_s: float) -> DelayEstimate | None:
-    """Return the mean of a channel while the motor rests with its terminals at 0 V; None when it never does.
-
-    It rests while the terminal voltage has been below 2 % of the highest for `REST_S`, or since the file began: braking
-    is over by then.
-    """
-    off = np.abs(voltage_v) < 0.02 * float(np.max(np.abs(voltage_v)))
-    places = np.arange(len(off))
-    last_on = np.maximum.accumulate(np.where(off, -len(off), places))
-    rest = off & ((places - last_on) * period_s > REST_S)
+    """Return the mean of a channel while the motor rests with its terminals at 0 V; None when it never does."""
+    rest = resting(voltage_v, period_s)
     count = int(np.count_nonzero(rest))
     if count * period_s < 0.1:
         return None
     return DelayEstimate(float(np.mean(values[rest])), float(np.std(values[rest]) / np.sqrt(count)), count)
+
+
+def resting(voltage_v: Samples, period_s: float) -> Mask:
+    """Say where the motor rests with its terminals at 0 V.
+
+    There the terminal voltage has been below 2 % of the highest for `REST_S`, or since the file began: braking is over
+    by then.
+    """
+    off = np.abs(voltage_v) < 0.02 * float(np.max(np.abs(voltage_v)))
+    places = np.arange(len(off))
+    last_on = np.maximum.accumulate(np.where(off, -len(off), places))
+    return np.asarray(off & ((places - last_on) * period_s > REST_S), np.bool_)
 
 
 def voltage_steps(voltage_v: Samples, period_s: float) -> list[int]:

@@ -16,7 +16,7 @@ WRITINGS = ((",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", 
 #: Rows that are looked at to tell the kinds of columns.
 SAMPLED = 400
 _UNIT = re.compile(r"[\[(]\s*(?P<unit>[^\])]*?)\s*[\])]\s*$")
-_AFTER = re.compile(r"\s(?:/|in)\s*(?P<unit>\S+)\s*$")
+_AFTER = re.compile(r"(?:^|\s)(?:/|in\b)\s*(?P<unit>\S+)\s*$")
 _START = re.compile(r"(t0|start|x0|x_?origin|xzero|start time)", re.IGNORECASE)
 _STEP = re.compile(r"(t_?inc|increment|x_?increment|delta_x|sample interval|sample period|dt)", re.IGNORECASE)
 _NO_UNIT = ("[]", "[-]", "()", "(-)")

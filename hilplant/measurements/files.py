@@ -10,7 +10,7 @@ import numpy as np
 
 from hilplant.failure import Failure
 from hilplant.measurements.channels import Channels
-from hilplant.measurements.columns import KNOWN_NAMES, Column, clock_of, unit_scale
+from hilplant.measurements.columns import KNOWN_NAMES, Column, clock_of, has_unit, unit_scale
 from hilplant.measurements.frames import FrameSource
 from hilplant.measurements.measurement import Channel
 
@@ -109,8 +109,9 @@ def _csv(origin: Origin) -> Channels:
     from hilplant.measurements.csv_table import read_csv
 
     table = read_csv(origin.path)
-    columns, units = table.columns, table.units
-    clock = clock_of(origin.time) or (None if origin.time or _time_of(columns) else table.clock)
+    units = table.units
+    columns = {name: values for name, values in table.columns.items() if units[name].lower() != "sequence"}
+    clock = clock_of(origin.time) or (None if origin.time or _time_of(columns, units) else table.clock)
     if clock is not None:
         count = len(next(iter(columns.values())))
         return _on_one_clock(clock[0] + clock[1] * np.arange(count), columns, units)
@@ -145,7 +146,7 @@ def _numbers(values: Any) -> tuple[Any, bool]:
 
 def _table(origin: Origin, columns: Mapping[str, Any], units: Mapping[str, str], first_line: int) -> Channels:
     """Take the time out of a table, in seconds; rows without a time are an error."""
-    column = origin.time or _time_of(columns)
+    column = origin.time or _time_of(columns, units)
     if column is None or column.name not in columns:
         wanted = f"'{column.name}'" if column else "for the time"
         text = f"no column {wanted}; say --columns time=NAME[unit] with one of {', '.join(columns)}"
@@ -159,9 +160,11 @@ def _table(origin: Origin, columns: Mapping[str, Any], units: Mapping[str, str],
     return _on_one_clock(time_s, rest, units)
 
 
-def _time_of(columns: Mapping[str, Any]) -> Column | None:
+def _time_of(columns: Mapping[str, Any], units: Mapping[str, str]) -> Column | None:
+    """Return the column that is called time, else the only one in a unit of time."""
     words = (Column(name) for word in KNOWN_NAMES["time"] for name in columns if name.lower() == word)
-    return next(words, None)
+    timed = [Column(name) for name in columns if units.get(name) and has_unit("time", units[name])]
+    return next(words, timed[0] if len(timed) == 1 else None)
 
 
 def _on_one_clock(time_s: Any, columns: Mapping[str, Any], units: Mapping[str, str]) -> Channels:

@@ -3,6 +3,7 @@
 The process writes arrays to a file: channels as raw numbers, or frames of the bus.
 """
 
+import signal
 import subprocess
 import sys
 import tempfile
@@ -59,7 +60,15 @@ def _arrays(path: Path, what: str) -> dict[str, np.ndarray]:
             raise Failure(f"{path}: cannot be read as MDF: no end after {LONGEST_S:g} s") from None
         if done.returncode or not out.is_file():
             lines = done.stderr.decode("utf-8", "replace").strip().splitlines()
-            reason = lines[-1] if done.returncode == 1 and lines else f"its reader ended with code {done.returncode}"
+            reason = lines[-1] if done.returncode == 1 and lines else f"its reader {_end(done.returncode)}"
             raise Failure(f"{path}: cannot be read as MDF, it may be damaged: {reason}")
         with np.load(out) as arrays:
             return dict(arrays)
+
+
+def _end(code: int) -> str:
+    """Say how a process ended that said nothing itself."""
+    if code >= 0:
+        return f"ended with code {code}"
+    known = {int(each): each.name for each in signal.Signals}
+    return f"died of {known.get(-code, f'signal {-code}')}"
