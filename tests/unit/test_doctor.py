@@ -89,7 +89,7 @@ def test_in_a_terminal_findings_break_between_words_and_commands_not_at_all(
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("NO_COLOR", "1")
     what, command = "several words " * 12, "sudo " + "x" * 90
-    print_findings([doctor.Finding("name", "warn", what.strip(), command)])
+    print_findings([MachineFinding("name", "warn", what.strip(), command)])
     *lines, last = capsys.readouterr().out.splitlines()
     assert len(lines) == 4
     assert all(len(line) <= 60 and line.endswith(("several", "words")) for line in lines)

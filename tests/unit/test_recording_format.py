@@ -1,13 +1,14 @@
 """A block of a recording keeps every bit, puts each frame in its tick's row, and tells any change."""
 
 import io
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from hilplant.recording.drain import RecordingWriter
-from hilplant.recording.format import SIGNAL_COLUMNS, batch, checksum, schema
+from hilplant.recording.format import SIGNAL_COLUMNS, batch, checksum, read_batch, schema
+from hilplant.recording.writer import RecordingWriter
 from hilplant.runtime.ring import FRAME_DTYPE
 
 WIDTH = 2 + len(SIGNAL_COLUMNS)
@@ -44,14 +45,14 @@ def test_every_bit_of_every_number_is_kept_whatever_it_means() -> None:
     rows = rows_of(0, 1, 2, 3, 4, 5)
     odd = np.array([0x7FF8000000000000, 0x7FF0000000000001, 0xFFFFFFFFFFFFFFFF, 1 << 63, 0x7FF << 52, 1], np.uint64)
     rows[:, 5] = odd.view(np.float64)
-    values = through_a_file(batch(rows, frames_of(), schema({})))
+    values = read_batch(through_a_file(batch(rows, frames_of())))
     assert values.column(5).null_count == 0
     for index in range(2, WIDTH):
         assert values.column(index).to_numpy().tobytes() == rows[:, index].tobytes()
 
 
 def test_frames_join_the_row_of_their_tick_and_frames_without_a_row_get_one_of_nulls() -> None:
-    values = batch(rows_of(10, 12), frames_of(9, 10, 10, 11, 12, 13), schema({}))
+    values = batch(rows_of(10, 12), frames_of(9, 10, 10, 11, 12, 13))
     assert values.column("tick").to_pylist() == [9, 10, 11, 12, 13]
     assert values.column("deadline_ns").is_valid().to_pylist() == [False, True, False, True, False]
     assert identifiers(values) == [[0], [1, 2], [3], [4], [5]]
@@ -60,7 +61,7 @@ def test_frames_join_the_row_of_their_tick_and_frames_without_a_row_get_one_of_n
 
 
 def test_the_checksum_survives_the_file_and_tells_any_change() -> None:
-    values = batch(rows_of(0, 2), frames_of(0, 1, 1, 2), schema({}))
+    values = batch(rows_of(0, 2), frames_of(0, 1, 1, 2))
     mark = checksum(values)
     assert checksum(through_a_file(values)) == mark
     for rows, frames in (
@@ -69,19 +70,19 @@ def test_the_checksum_survives_the_file_and_tells_any_change() -> None:
         (rows_of(0, 2), frames_of(0, 1, 1)),
         (rows_of(0, 1, 2), frames_of(0, 1, 1, 2)),
     ):
-        assert checksum(batch(rows, frames, schema({}))) != mark
+        assert checksum(batch(rows, frames)) != mark
 
 
 def test_the_checksum_tells_one_byte_of_one_frame() -> None:
     frames = frames_of(0, 1, 2)
-    mark = checksum(batch(rows_of(0, 1, 2), frames, schema({})))
+    mark = checksum(batch(rows_of(0, 1, 2), frames))
     frames["data"][2, 1] ^= 1
-    assert checksum(batch(rows_of(0, 1, 2), frames, schema({}))) != mark
+    assert checksum(batch(rows_of(0, 1, 2), frames)) != mark
 
 
-def test_a_file_is_a_recording_before_its_first_row() -> None:
-    stored = io.BytesIO()
-    RecordingWriter(stored, {"format": "1"}, WIDTH)
-    stream = pa.ipc.open_stream(stored.getvalue())
-    assert stream.schema.names == schema({}).names
+def test_a_file_is_a_recording_before_its_first_row(tmp_path: Path) -> None:
+    path = tmp_path / "run.hilrec"
+    RecordingWriter(path, {"format": "2"}, WIDTH)
+    stream = pa.ipc.open_stream(path.read_bytes())
+    assert stream.schema.names == schema().names
     assert stream.read_next_batch().num_rows == 0
