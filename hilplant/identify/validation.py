@@ -45,10 +45,10 @@ EXPLAINED = 1.2
 
 
 def unexplained(compared: Sequence[Comparison]) -> list[str]:
-    """Return a line for each recording whose current the model does not explain: intervals are too narrow then."""
+    """Return a line for each recording whose current the model does not explain: intervals would be too narrow."""
     return [
         f"{each.name}: the current's error is {each.rms_current_a / each.noise_a:.1f} times the noise: the model does "
-        "not explain it, so intervals are too narrow; try --also coulomb_torque_n_m, or look at the data"
+        "not explain it, so intervals are withheld; try --also coulomb_torque_n_m, or look at the data"
         for each in (comparison.error for comparison in compared)
         if each.rms_current_a > EXPLAINED * each.noise_a > 0.0
     ]

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from hilplant.cli.actions.identify import _print_parameters
 from hilplant.identify.validation import unexplained
 
 
@@ -17,3 +18,19 @@ def test_what_is_left_beyond_the_noise_is_told(rms_a: float, said: bool) -> None
     lines = unexplained([compared(0.05, 0.1), compared(rms_a, 0.1)])
     assert bool(lines) == said
     assert all(f"{10.0 * rms_a:.1f} times the noise" in line and "--also" in line for line in lines)
+
+
+@pytest.mark.parametrize(("rms_a", "shown"), [(0.1, "1.27 to 1.29"), (0.56, "withheld: the model does not fit")])
+def test_no_interval_is_shown_for_a_model_that_does_not_fit(
+    capsys: pytest.CaptureFixture[str], rms_a: float, shown: str
+) -> None:
+    found: Any = SimpleNamespace(
+        verdicts=[SimpleNamespace(name="slow_resistance_ohm", value=1.28, told=True, together=())],
+        intervals=[(1.27, 1.29)],
+        task=SimpleNamespace(choice=SimpleNamespace(values=[1.0])),
+        fitted=[compared(rms_a, 0.1)],
+    )
+    _print_parameters(found)
+    printed = capsys.readouterr().out
+    assert shown in printed
+    assert ("1.27" in printed) == (rms_a < 0.2)

@@ -45,9 +45,12 @@ def _print(found: Identified, known: StartingPoint, written: list[Path]) -> None
 def _print_parameters(found: Identified) -> None:
     rows = zip(found.verdicts, found.intervals, found.task.choice.values, strict=True)
     typer.echo(f"{'parameter':24}{'before':>12}{'found':>12}   95 % interval")
+    withheld = bool(unexplained(found.fitted))
     for verdict, interval, before in rows:
         text = "not told by these data"
-        if verdict.told:
+        if verdict.told and withheld:
+            text = "withheld: the model does not fit"
+        elif verdict.told:
             text = " to ".join("open" if side is None else f"{side:.5g}" for side in interval)
         elif verdict.together:
             text += f", not apart from {', '.join(verdict.together)}"
