@@ -86,9 +86,10 @@ class Car:
             self.wind_m_s = chance.choice([0.0, 0.0, 15.0, 30.0])
         return self.stalk
 
-    def __call__(self, _bus_ns: int, _state: Any, inputs: Any) -> None:
+    def __call__(self, _bus_ns: int, _state: Any, inputs: Any) -> bool:
         for name, value in (("supply_v", self.supply_v), ("screen", self.screen), ("vehicle_speed_m_s", self.wind_m_s)):
             inputs[INPUT_INDEX[name]] = value
+        return True
 
 
 def rounds(bench: Bench, seed: int) -> Iterator[tuple[Tape, Any]]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema
 
+from hilplant.bench.controller_file import ControllerFile
 from hilplant.bench.description import BenchDescription
 from hilplant.bench.ecu_description import EcuSettings
 from hilplant.bench.parts import LinkageFile, MotorFile
@@ -23,6 +24,7 @@ KINDS: Mapping[str, tuple[type[Checked], int]] = {
     "linkage": (LinkageFile, 1),
     "screen": (ScreenFile, 1),
     "ecu": (EcuSettings, 1),
+    "controller": (ControllerFile, 1),
 }
 
 #: Units by the end of a key; a longer end goes before a shorter one.

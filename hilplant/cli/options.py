@@ -15,6 +15,10 @@ Seconds = Annotated[
     float | None, typer.Option(min=0.001, max=1e9, help="end after this time; without it, on Ctrl-C or SIGTERM")
 ]
 JsonFile = Annotated[Path | None, typer.Option("--json", help="write the figures to this file")]
+Budget = Annotated[
+    int | None,
+    typer.Option(min=1, help="processor time a call of your own controller may take; half a period if left out"),
+]
 Channel = Annotated[str | None, typer.Option(help="use this channel instead of the bench's, such as can0")]
 
 DataNames = Annotated[

@@ -46,8 +46,9 @@ FINE_PERIOD_S, BUS_PACE = 0.001, 0.15
 #: observer corrects the resistance.
 SENSORLESS, ADAPTING = "_sensorless", 0.5
 
-#: Section 7.6: up to the fast brush at 18 V; back at 12 V, below which the slow brush needs less than 16 V.
-UP_V, DOWN_V = 18.0, 12.0
+#: Section 7.6: up to the fast brush at 18 V on the slow one for 0.2 s; back where the slow brush would need less than
+#: 16 V without load, and less than that with one: the lower threshold is this by the ratio of the brushes' constants.
+UP_V, UP_HOLD_S, BACK_V = 18.0, 0.2, 16.0
 
 #: What an observer assumes where only the current is measured: the load torque changes faster than sensors tell.
 BLIND_NOISE = ObserverNoise(current_a=0.05, voltage_v=0.02, torque_rate=3.0)
@@ -116,7 +117,8 @@ def sensorless(controller: Controller, motor: Motor, source: str, adapting: floa
 
 def with_stages(controller: Controller, motor: Motor) -> Controller:
     """Return the same controller with both brushes, by the chart of section 7.6."""
-    return controller._replace(stages=Stages(UP_V, DOWN_V, 0.2, motor.fast.constant_v_s / motor.slow.constant_v_s))
+    ratio = motor.fast.constant_v_s / motor.slow.constant_v_s
+    return controller._replace(stages=Stages(UP_V, BACK_V * ratio, UP_HOLD_S, ratio))
 
 
 def without_network() -> Tables:

@@ -69,7 +69,7 @@ def control(
     else:
         error = reference_rad_s - speed
         neuron_memory, voltage = single_neuron(memory.neuron, memory.voltage_v, error, controller, tables.gain)
-    stage, factor = choose_stage(memory.stage, voltage, controller)
+    stage, factor = choose_stage(memory.stage, voltage, reference_rad_s, controller)
     if factor != 1.0:
         voltage = min(max(voltage * factor, controller.lowest_v), controller.highest_v)
         pid_memory = PidMemory(pid_memory.integral_v * factor, pid_memory.error)

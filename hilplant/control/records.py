@@ -109,7 +109,7 @@ class Cascade(NamedTuple):
 
 
 class Stages(NamedTuple):
-    """The chart of section 7.6: above `up_v` for `hold_s` on to the fast brush, below `down_v` as long back to slow.
+    """The chart of section 7.6: above `up_v` for `hold_s` on to the fast brush, below `down_v` for a turn back to slow.
 
     `factor` is applied to the voltage on the way up, its inverse on the way down, so that the back-EMF is met.
     """
@@ -168,10 +168,10 @@ class NeuronMemory(NamedTuple):
 
 
 class Stage(NamedTuple):
-    """The brush in use, 1 fast or 0 slow, and for how long [s] the voltage has asked for the other one."""
+    """The brush in use, 1 fast or 0 slow, and the share, 0 to 1, of the wait for the other one that has passed."""
 
     fast: float = 0.0
-    waited_s: float = 0.0
+    waited: float = 0.0
 
 
 class Memory(NamedTuple):

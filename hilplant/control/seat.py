@@ -21,7 +21,12 @@ ASIDE_NS = 50 * MILLISECOND_NS
 
 
 class Seat:
-    """A controller with its memory. Construction compiles it, so that no tick meets cold code."""
+    """A controller with its memory. Construction compiles it, so that no tick meets cold code.
+
+    `reference` is read at each tick and may be replaced between ticks.
+    """
+
+    stopped = ""  # why it was stopped, as one of a user's may be
 
     def __init__(self, controller: Controller, tables: Tables, reference: Reference) -> None:
         """Sit down; `reference` gives the wanted speed [rad/s] by the time [s]."""
@@ -51,7 +56,7 @@ class LoopSeat(Seat):
         plant = (np.zeros(len(STATE_INDEX)), parameter_row, np.zeros(len(INPUT_INDEX)))
         _drive(POWER_ON, 0.0, controller, tables, plant)
 
-    def drive(self, now_ns: int, state_row: Any, input_row: Any) -> None:
+    def drive(self, now_ns: int, state_row: Any, input_row: Any) -> bool:
         """Take one tick on the loop's own rows; `input_row` gets the command. It is what ``Loop.control`` calls.
 
         While the loop is in its safe state it does not ask; after that the controller begins anew, as on the bus.
@@ -62,6 +67,7 @@ class LoopSeat(Seat):
         wanted = self.reference(now_ns / SECOND_NS)
         plant = (state_row, self._parameter_row, input_row)
         self.memory = _drive(self.memory, wanted, self._controller, self._tables, plant)
+        return True
 
 
 @compiled

@@ -8,6 +8,7 @@ from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.frame import Frame
 from hilplant.bus.node import LinkSettings, Node
 from hilplant.bus.transport import Transport
+from hilplant.control.own import OwnSeat
 from hilplant.control.records import Command, Measured
 from hilplant.control.seat import Seat
 from hilplant.failure import Failure
@@ -38,7 +39,11 @@ class VelocityNode:
     """
 
     def __init__(
-        self, received: Sequence[ReceivedMessage], sent: Sequence[SentMessage], transport: Transport, seat: Seat
+        self,
+        received: Sequence[ReceivedMessage],
+        sent: Sequence[SentMessage],
+        transport: Transport,
+        seat: Seat | OwnSeat,
     ) -> None:
         """Join the bus with the ECU's side of a bench's messages."""
         heard = [message for message in received if set(_HEARD) & set(message.targets)]

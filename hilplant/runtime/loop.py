@@ -40,8 +40,9 @@ _GUARD = OUTPUT_INDEX["guard"]
 _DEGRADED_FOR_NS = SECOND_NS
 
 
-#: A controller inside the loop: called with time [ns], state row and input row, it writes its command to the last.
-Control = Callable[[int, NDArray[np.float64], NDArray[np.float64]], None]
+#: A controller inside the loop: called with time [ns], state row and input row, it writes its command to the last, and
+#: says whether it is sound. One that is not is not called again: the safe state is in force from then on.
+Control = Callable[[int, NDArray[np.float64], NDArray[np.float64]], bool]
 
 
 class PlantRows(Protocol):
@@ -97,6 +98,7 @@ class Loop:
         self.latency = Latency()
         #: Called in each tick in which no command is lost.
         self.control: Control | None = None
+        self.control_stopped = False
         #: The inputs as last commanded; who commands beside the bus writes here, between ticks.
         self.commanded = node.values
         self._plant = plant
@@ -153,11 +155,13 @@ class Loop:
 
     def _step(self, safe: bool, mode: float) -> None:
         self._inputs[:] = self._node.values
-        if safe:
+        if not safe and self.control is not None:
+            self.control_stopped = not self.control(self._bus_ns, self._state, self._inputs)
+            if self.control_stopped:
+                self.control, mode = None, SAFE
+        if safe or self.control_stopped:
             for index, value in self._plant.safe:
                 self._inputs[index] = value
-        elif self.control is not None:
-            self.control(self._bus_ns, self._state, self._inputs)
         self._before[:] = self._state
         plant_tick(self._state, self._inputs, self._plant.parameter_row, self._plant.tables, self._outputs)
         self._published = [*self._outputs.tolist(), *self._status_values(mode)]
@@ -195,7 +199,7 @@ class Loop:
         return {signal.name: int(status[index]) for index, signal in enumerate(STATUS) if signal.kind == "count"}
 
     def _mode(self, bus_ns: int) -> float:
-        if self._outputs[_GUARD]:
+        if self._outputs[_GUARD] or self.control_stopped:
             return SAFE
         if self._node.lost:
             return WAITING if self._node.waiting else SAFE

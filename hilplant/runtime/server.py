@@ -86,6 +86,7 @@ class Summary:
     stopped_by_overrun: bool = False
     fell_behind: bool = False
     recording_complete: bool = True
+    controller_stopped: bool = False
     first_tick_monotonic_ns: int = 0
     counts: dict[str, int] = field(default_factory=dict)
     out_of_range: dict[str, float] = field(default_factory=dict)
@@ -94,7 +95,7 @@ class Summary:
     @property
     def is_sound(self) -> bool:
         """Whether the run was what it was to be: in real time as the bench wants it, and recorded without a gap."""
-        return self.recording_complete and not (self.stopped_by_overrun or self.fell_behind)
+        return self.recording_complete and not (self.stopped_by_overrun or self.fell_behind or self.controller_stopped)
 
 
 class StopRequest:
@@ -193,6 +194,7 @@ def _summary(loop: Loop, privileges: list[Privilege]) -> Summary:
         latency_max_us=latency.worst_ns / MICROSECOND_NS,
         stopped_by_overrun=loop.progress.stopped_by_overrun,
         fell_behind=loop.lost_time.exceeded,
+        controller_stopped=loop.control_stopped,
         first_tick_monotonic_ns=loop.progress.first_tick_ns,
         counts=loop.counts(),
         out_of_range=loop.rejected(),

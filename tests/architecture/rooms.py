@@ -56,7 +56,7 @@ ARROWS: dict[str, str] = {
     "faults": "units declaration signals arrays failure models checked_yaml bus verdicts",
     "bench": f"{_PHYSICS} checked_yaml bus",
     "runtime": "units declaration signals arrays failure jit models control bus",
-    "ecu": f"{_PHYSICS} bus bench runtime",
+    "ecu": f"{_PHYSICS} checked_yaml bus bench runtime",
     "recording": "units declaration signals arrays failure extras atomic_write jit models bus runtime",
     "c_source": _OFFLINE,
     "simulation": _OFFLINE,

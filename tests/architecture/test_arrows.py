@@ -19,7 +19,7 @@ CAN_FILES = {
 }
 #: Of the time module. The loop's clock is one file; the others are start-up, other processes and tools.
 CLOCK_FILES = {
-    "runtime/clock.py": {"monotonic_ns", "sleep"},
+    "runtime/clock.py": {"monotonic_ns", "sleep", "thread_time_ns"},
     "runtime/health.py": {"monotonic", "sleep"},
     "bus/arrival.py": {"time_ns"},
     "recording/drain.py": {"monotonic", "sleep"},

@@ -12,7 +12,7 @@ MOST_FUNCTION_LINES = 45
 BANNED = {"utils", "util", "manager", "handler", "process", "helper", "helpers", "misc", "common"}
 STATUSES = {"measured", "identified", "published", "assumed"}
 #: Folders of config/ whose files are parameter sets.
-PARAMETER_SETS = ("motors", "linkages", "screens", "measurements", "profiles")
+PARAMETER_SETS = ("motors", "linkages", "screens", "measurements", "profiles", "controllers")
 #: Folders of config/ whose files say what to do, not what a thing is like.
 DESCRIPTIONS = ("benches", "scenarios", "tests")
 #: Folder of config/ whose files a command has written, each with a seal.

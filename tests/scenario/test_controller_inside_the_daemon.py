@@ -48,10 +48,10 @@ class Wire:
 
 def ticked(name: str, reference: str, bench_name: str = "default") -> tuple[Loop, Wire, float]:
     """Return a loop with a controller inside, its interface, and the gear ratio."""
-    bench, control = seated(load_bench(bench_name), Inside(name, reference))
+    bench, seat = seated(load_bench(bench_name), Inside(name, reference))
     wire = Wire()
     loop = build_loop(bench, wire, VirtualClock())
-    loop.control = control
+    loop.control = seat.drive
     return loop, wire, bench.parameters.motor.gear_ratio
 
 

@@ -115,14 +115,15 @@ def test_without_a_measurement_the_voltage_stays(name):
     assert result[2] == result[3] == result[4] > 0.0
 
 
-def test_the_chart_goes_up_above_18_v_for_long_enough_and_down_below_12():
+def test_the_chart_goes_up_above_18_v_for_long_enough_and_down_below_12_for_a_turn():
+    """At 2 pi rad/s a turn takes a second: 999 ticks below the threshold and one above begin it anew."""
     controller = Controller(0.0, 0.001, stages=Stages(18.0, 12.0, 0.2, 0.75))
     stage, factors = Stage(), []
-    for voltage in [19.0] * 150 + [17.0] + [19.0] * 250 + [13.0] * 500 + [11.0] * 250:
-        stage, factor = choose_stage(stage, voltage, controller)
+    for voltage in [19.0] * 150 + [17.0] + [19.0] * 250 + [13.0] * 500 + [11.0] * 990 + [13.0] + [11.0] * 1010:
+        stage, factor = choose_stage(stage, voltage, 2.0 * math.pi, controller)
         factors.append(factor)
     changes = [(index, factor) for index, factor in enumerate(factors) if factor != 1.0]
-    assert [index for index, _ in changes] == [350, 1100]
+    assert [index for index, _ in changes] == pytest.approx([350, 2891], abs=1)
     assert [factor for _, factor in changes] == pytest.approx([0.75, 1.0 / 0.75])
     assert stage.fast == 0.0
 

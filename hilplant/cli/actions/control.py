@@ -7,9 +7,8 @@ import typer
 
 from hilplant.bench import load_bench
 from hilplant.bus.transport import open_transport
-from hilplant.control.catalogue import controller_named, without_network
 from hilplant.control.reference import parse_reference
-from hilplant.control.seat import Seat
+from hilplant.ecu.controller_choice import ControllerChoice, Driven, seat_on_bus
 from hilplant.ecu.velocity_node import VelocityNode, VelocityReport, run_velocity_node, status_period_ns
 from hilplant.runtime.clock import WallClock
 from hilplant.runtime.server import StopRequest, ended_by_signals
@@ -17,23 +16,29 @@ from hilplant.units import SECOND_NS
 
 
 def control_command(
-    bench_name: str, name: str, reference: str, seconds: float | None, channel: str | None = None
-) -> None:
-    """Be the controller until the time is up, or SIGTERM or Ctrl-C ends it; the relays are released at the end."""
-    wanted, bench = parse_reference(reference), load_bench(bench_name)
+    bench_name: str, wanted: tuple[str, str, int | None], seconds: float | None, channel: str | None = None
+) -> bool:
+    """Be a controller until the time is up, or SIGTERM or Ctrl-C ends it; the relays are released at the end.
+
+    `wanted` are its name, its reference as written and its time budget [us]. Say whether it was sound to the end.
+    """
+    name, reference, budget_us = wanted
+    choice, bench = ControllerChoice(name, parse_reference(reference), budget_us), load_bench(bench_name)
     interface = bench.interface if channel is None else {**bench.interface, "channel": channel}
     period_ns = status_period_ns(bench.send)
-    controller = controller_named(name, bench.parameters.motor, period_ns / SECOND_NS)
-    side, seat = bench.ecu_side(), Seat(controller, without_network(), wanted)
+    side, seat = bench.ecu_side(), seat_on_bus(choice, Driven(bench.parameters.motor, period_ns / SECOND_NS))
     node = VelocityNode(side.receive, side.send, open_transport(interface), seat)
     node.report = _printer()
     stop, clock = StopRequest(), WallClock()
     end_ns = math.inf if seconds is None else clock.now_ns() + seconds * SECOND_NS
     with ended_by_signals(stop):
         try:
-            run_velocity_node(node, clock, lambda: stop() or clock.now_ns() >= end_ns, period_ns)
+            run_velocity_node(node, clock, lambda: bool(stop() or seat.stopped) or clock.now_ns() >= end_ns, period_ns)
         finally:
             node.close()
+    if seat.stopped:
+        typer.echo(f"{seat.stopped}; relays opened", err=True)
+    return not seat.stopped
 
 
 def _printer() -> Callable[[VelocityReport], None]:

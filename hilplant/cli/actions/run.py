@@ -27,7 +27,8 @@ def run_daemon(
         bench = replace(bench, interface={**bench.interface, "channel": channel})
     control: Control | None = None
     if inside is not None:
-        bench, control = seated(bench, inside)
+        bench, seat = seated(bench, inside)
+        control = seat.drive
     summary: Summary | None = None
     stop, voice = StopRequest(), Voice()
     try:
@@ -40,6 +41,8 @@ def run_daemon(
         summary.recording_complete = False  # the run itself is told all the same
         voice.say(str(failure), err=True)
     _say_end(summary, record, voice)
+    if summary.controller_stopped:
+        voice.say(f"{seat.stopped}; relays opened", err=True)
     return summary
 
 

@@ -11,6 +11,7 @@ from hilplant.cli.groups import command_app
 from hilplant.cli.options import (
     DEFAULT,
     BenchName,
+    Budget,
     Channel,
     JsonFile,
     Seconds,
@@ -32,10 +33,11 @@ def run(  # noqa: PLR0913, PLR0917
     rotate: Annotated[str | None, typer.Option(help="record in parts of this size or time: 100MB, 1h, or both")] = None,
     keep: Annotated[int | None, typer.Option(min=1, help="keep this many parts, the newest")] = None,
     channel: Channel = None,
-    controller: Annotated[str | None, typer.Option(help="a velocity controller inside the loop, by its name")] = None,
+    controller: Annotated[str | None, typer.Option(help="a velocity controller inside the loop")] = None,
     reference: Annotated[
         str | None, typer.Option(help="its wanted crank speed: RAD_S, or TIME:RAD_S,...  [default: 3.14]")
     ] = None,
+    budget_us: Budget = None,
     json_file: JsonFile = None,
 ) -> None:
     """Serve a bench on its CAN interface.
@@ -55,7 +57,7 @@ def run(  # noqa: PLR0913, PLR0917
         raise Failure("--rotate is about a recording: give --record FILE with it")
     to = None if record is None else RecordTo(record, rotation)
     claim(json_file)
-    inside = None if controller is None else Inside(controller, reference or "3.14")
+    inside = None if controller is None else Inside(controller, reference or "3.14", budget_us)
     summary = run_daemon(bench, seconds, to, channel, inside)
     missing = " | ".join(f"{given.name}: {given.mend}" for given in summary.privileges if not given.granted)
     write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))

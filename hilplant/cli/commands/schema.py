@@ -19,6 +19,7 @@ class Kind(StrEnum):
     SCREEN = "screen"
     SCENARIO = "scenario"
     ECU = "ecu"
+    CONTROLLER = "controller"
 
 
 @app.command(epilog="Example: hilplant schema bench > bench-1.json")
