@@ -47,9 +47,9 @@ def parameters_of(readings: Readings, beside: Path) -> Values:
         if name in values and name != "damping_n_m_s":
             raise Failure(f"{name} is given, and the readings tell it too: leave one out")
         values[name] = quantity(value)
-    for name, remedy in _REMEDIES.items():
-        if name not in values:
-            raise Failure(f"nothing tells {name}: give {remedy}")
+    missing = [f"nothing tells {name}: give {remedy}" for name, remedy in _REMEDIES.items() if name not in values]
+    if missing:
+        raise Failure("; ".join(missing))
     return values
 
 

@@ -33,6 +33,8 @@ BO_ 257 Switch: 1 RIG
 #: A case may last so long [s], and the process may have so much memory [KiB].
 LONGEST_S, MOST_KIB = 20, 1 << 20
 COUNT = 120
+#: MF4 takes a process for each case, so it comes more seldom than the others.
+MF4_PART = 0.1
 
 
 def good_files(folder: Path) -> list[Path]:
@@ -50,6 +52,9 @@ def good_files(folder: Path) -> list[Path]:
         with can.Logger(folder / name) as log:
             for k, time_s in enumerate(times.tolist()):
                 log(can.Message(1.7e9 + time_s, 256 + k % 2, False, data=bytes([k, 0, 1, 2][: 4 - 3 * (k % 2)])))
+    with can.Logger(folder / "i.mf4") as log:
+        for k, time_s in enumerate(times.tolist()):
+            log(can.Message(1.7e9 + time_s, 256, False, data=bytes([k, 0, 1, 2]), channel=0))
     return sorted(folder.iterdir())
 
 
@@ -89,7 +94,7 @@ def run(cases: int, seed: int, say: Callable[[str], None] = print) -> int:
         files = [(path.suffix, path.read_bytes()) for path in good_files(folder / "good")]
         for case in range(cases):
             rng = random.Random(seed * 1_000_003 + case)
-            ending, content = rng.choice(files)
+            ending, content = rng.choices(files, [MF4_PART if path == ".mf4" else 1.0 for path, _ in files])[0]
             path = folder / f"x{ending}"
             path.write_bytes(mutated(content, rng))
             signal.alarm(LONGEST_S)
