@@ -43,7 +43,7 @@ def plot_torque(bench: Bench, out_png: str | PathLike[str]) -> None:
     panels[-1].set_xlim(0, 360)
     low, high = panels[0].get_ylim()
     panels[0].set_ylim(low, high + 0.18 * (high - low))
-    figure.suptitle(f"{bench.name}: torque at the crank, positive when it opposes motion")
+    figure.suptitle(f"{bench.name}: torque at the crank, positive when it opposes motion", parse_math=False)
     save(figure, out_png, 110)
 
 
@@ -66,7 +66,9 @@ def plot_conditions(bench: Bench, out_png: str | PathLike[str]) -> None:
     axes.set_xlabel("time [s]; tinted: the forward wipe")
     axes.set_ylabel("torque [N m]")
     turns = CRANK_SPEED_RAD_S * 60.0 / TURN_RAD
-    figure.suptitle(f"{bench.name}: torque at the crank at an even {turns:g} turns a minute, section 4.6")
+    figure.suptitle(
+        f"{bench.name}: torque at the crank at an even {turns:g} turns a minute, section 4.6", parse_math=False
+    )
     save(figure, out_png, 110)
 
 

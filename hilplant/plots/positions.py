@@ -47,7 +47,7 @@ def plot_positions(
     lines, labels = panels[0, 0].get_legend_handles_labels()
     once = dict(zip(labels, lines, strict=True))  # all links but the crank look alike
     figure.legend(once.values(), once.keys(), loc="outside lower center", ncols=len(once), frameon=False)
-    figure.suptitle(title)
+    figure.suptitle(title, parse_math=False)
     save(figure, out_png, 110)
 
 

@@ -41,7 +41,9 @@ def plot_recording(path: str | PathLike[str], out_png: str | PathLike[str]) -> N
     panels[-1].set_xlabel("time [s]")
     panels[-1].set_xlim(0.0, max(columns["time_s"][-1], recording.run.step_ns / SECOND_NS))
     sparse = f", one tick in {stride}" if stride > 1 else ""
-    figure.suptitle(f"{recording.run.name}: {columns['time_s'][-1]:.4g} s, recorded by hilplant{sparse}")
+    figure.suptitle(
+        f"{recording.run.name}: {columns['time_s'][-1]:.4g} s, recorded by hilplant{sparse}", parse_math=False
+    )
     save(figure, out_png, 130)
 
 

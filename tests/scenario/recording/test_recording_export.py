@@ -3,6 +3,7 @@
 import csv
 import importlib
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -162,6 +163,18 @@ def test_a_damaged_recording_leaves_no_half_file_and_what_was_there_before(
 def test_a_plot_is_a_picture(record_run: Record, tmp_path: Path) -> None:
     out = tmp_path / "run.png"
     plot_recording(record_run(), out)
+    assert out.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("name", ["$\\frac{$", "$", "a $x^$ b", "{}_^\\"])
+def test_a_benchs_name_is_drawn_as_it_is_written(
+    record_run: Record, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    recording = read_recording(record_run())
+    recording.run = replace(recording.run, name=name)
+    monkeypatch.setattr("hilplant.plots.recording.read_recording", lambda path: recording)
+    out = tmp_path / "run.png"
+    plot_recording("run", out)
     assert out.read_bytes().startswith(b"\x89PNG")
 
 

@@ -126,3 +126,12 @@ def test_another_arrow_file_is_refused(tmp_path: Path) -> None:
 def test_a_missing_file_is_one_clear_error(tmp_path: Path) -> None:
     with pytest.raises(Failure, match="No such file"):
         read_recording(tmp_path / "nothing.hilrec")
+
+
+def test_a_damaged_name_of_a_column_is_one_clear_error(record_run: Record) -> None:
+    path = record_run()
+    damaged = bytearray(path.read_bytes())
+    damaged[damaged.index(b"terminal_v")] ^= 0x80
+    path.write_bytes(damaged)
+    with pytest.raises(Failure, match="a column's name is damaged"):
+        read_recording(path)
