@@ -51,7 +51,7 @@ ARROWS: dict[str, str] = {
     "mechanics": "units declaration signals arrays failure models",
     "control": "units declaration signals arrays failure jit models",
     "checked_yaml": "failure resources",
-    "bus": "units declaration signals arrays failure",
+    "bus": "units declaration signals arrays failure extras",
     "verdicts": "units declaration signals arrays failure checked_yaml",
     "faults": "units declaration signals arrays failure models checked_yaml bus verdicts",
     "bench": f"{_PHYSICS} checked_yaml bus",
