@@ -36,6 +36,9 @@ class Line:
         self.tick += 1
         return [FAST] if self.tick <= self.until and (self.tick - 1) % self.period == 0 else []
 
+    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
+        return [(frame, 0) for frame in self.receive(limit)]
+
     def send(self, frame: Frame) -> SendResult:
         self.sent.append(frame)
         return SendResult.SENT
