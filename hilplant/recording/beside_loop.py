@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from hilplant.extras import need
-from hilplant.recording.metadata import RecordedBench
+from hilplant.recording.recorded_bench import RecordedBench
 from hilplant.recording.rotation import Rotation
 from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
@@ -39,7 +39,7 @@ def recording(bench: LoopedBench, record: RecordTo | None) -> Iterator[Ring]:
         At the end, when something of the run was not recorded.
     """
     if record is None:
-        with contextlib.closing(Ring.create(ROW_WIDTH)) as ring:  # for whoever wants to look
+        with contextlib.closing(Ring.create(ROW_WIDTH)) as ring:  # for all who want to look
             yield ring
         return
     need("recording")

@@ -5,46 +5,17 @@ import json
 import platform
 import secrets
 import zlib
-from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hilplant import __version__
 from hilplant.recording.format import FORMAT_VERSION
-
-
-class RecordedBench(Protocol):
-    """What a recording keeps of a bench."""
-
-    @property
-    def name(self) -> str:
-        """Name of the bench."""
-
-    @property
-    def step_ns(self) -> int:
-        """Length of a tick."""
-
-    @property
-    def parameter_row(self) -> NDArray[np.float64]:
-        """Packed parameters."""
-
-    @property
-    def tables(self) -> NDArray[np.float64]:
-        """Tables over the crank angle."""
-
-    @property
-    def state_row(self) -> NDArray[np.float64]:
-        """Packed state before the first tick."""
-
-    @property
-    def sources(self) -> Mapping[str, str]:
-        """Texts of the bench's files by their names."""
+from hilplant.recording.recorded_bench import RecordedBench
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import IO
 
 from hilplant.failure import Failure
-from hilplant.recording.metadata import RecordedBench, describe
+from hilplant.recording.metadata import describe
+from hilplant.recording.recorded_bench import RecordedBench
 from hilplant.recording.rotation import Rotation, parts_of
 from hilplant.runtime.ring import Ring
 

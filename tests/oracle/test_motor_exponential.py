@@ -24,6 +24,7 @@ MOTORS = st.builds(
     inertia=powers_of_ten(-9, -3),
     damping=powers_of_ten(-7, 0) | st.just(0.0),
     dry_torque=st.just(0.0),
+    push=st.just(0.0) | st.floats(-1.0, 1.0),
 )
 
 
@@ -74,7 +75,7 @@ def test_the_turned_angle_is_the_integral_of_the_speed(
     speeds = [glide(start, drive, torque, 0.5 * time * (node + 1.0)).speed for node in nodes]
     # the angle comes from differences of the speed, times the mechanical time constant
     strength = drive.resistance * drive.damping + drive.constant**2
-    final = (abs(drive.voltage) * drive.constant + drive.resistance * abs(torque)) / strength
+    final = (abs(drive.voltage) * drive.constant + drive.resistance * (abs(torque) + abs(drive.push))) / strength
     lost = 1e-14 * (final + abs(speed)) * (time + drive.resistance * drive.inertia / strength)
     turned = 0.5 * time * float(weights @ speeds)
     assert abs(glide(start, drive, torque, time).turned - turned) <= 1e-8 * time * np.abs(speeds).max() + lost

@@ -23,6 +23,7 @@ MOTORS = st.builds(
     inertia=powers_of_ten(-9, -4),
     damping=powers_of_ten(-5, 0),
     dry_torque=st.just(0.0) | powers_of_ten(-5, 1),
+    push=st.just(0.0) | st.floats(-1.0, 1.0),
 )
 CURRENTS = st.just(0.0) | st.floats(-30.0, 30.0)
 SPEEDS = st.just(0.0) | st.floats(-400.0, 400.0) | st.floats(-1.0, 1.0)
@@ -45,20 +46,23 @@ def test_no_step_gains_more_energy_than_the_terminals_put_in(
     charge = (drive.voltage * STEP_S - flux) / drive.resistance
     losses = drive.resistance * charge**2 / STEP_S + drive.damping * end.turned**2 / STEP_S
     losses += drive.dry_torque * abs(end.turned)
-    put_in = drive.voltage * charge
-    size = stored(start, drive) + stored(end, drive) + abs(put_in) + losses
+    put_in = drive.voltage * charge + drive.push * end.turned
+    size = stored(start, drive) + stored(end, drive) + abs(drive.voltage * charge) + losses
+    size += abs(drive.push * end.turned)
     # the turned angle is a difference: good to 1e-15 rad, and to the bits of the final speed in the time constant
     strength = drive.resistance * drive.damping + drive.constant**2
-    final_speed = (abs(drive.voltage) * drive.constant + drive.resistance * drive.dry_torque) / strength
+    final_speed = (
+        abs(drive.voltage) * drive.constant + drive.resistance * (drive.dry_torque + abs(drive.push))
+    ) / strength
     good_to = 1e-15 + 2.3e-16 * final_speed * drive.resistance * drive.inertia / strength
-    rounding = 1e-9 * size + good_to * drive.dry_torque + 1e-18
+    rounding = 1e-9 * size + good_to * torque + 1e-18
     assert stored(end, drive) - stored(start, drive) <= put_in - losses + rounding
 
 
 @settings(max_examples=300, deadline=None)
 @given(drive=MOTORS, current=CURRENTS)
 def test_a_shaft_at_rest_stays_while_the_motor_is_too_weak(drive: ArmatureDrive, current: float) -> None:
-    strongest = drive.constant * max(abs(current), abs(drive.voltage) / drive.resistance)
+    strongest = drive.constant * max(abs(current), abs(drive.voltage) / drive.resistance) + abs(drive.push)
     end = advance(ArmatureMotion(current, 0.0, 0.0), drive._replace(dry_torque=strongest * 1.001 + 1e-9), STEP_S)
     assert (end.speed, end.turned) == (0.0, 0.0)
 

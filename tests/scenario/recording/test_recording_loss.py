@@ -69,10 +69,20 @@ def folder_moved(path: Path) -> None:
     path.parent.rename(path.parent.with_name("unmounted"))
 
 
+@pytest.fixture
+def told(capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture) -> Callable[[], str]:
+    """Return what the recorder's process and this one have told so far."""
+    return lambda: capfd.readouterr().err + caplog.text
+
+
 @pytest.mark.parametrize("harm", [removed, truncated, cut_in_the_middle, grown, moved, replaced, folder_moved])
 @pytest.mark.parametrize("rotation", [Rotation(), Rotation(part_bytes=10_000_000)], ids=["one", "parts"])
 def test_a_file_that_is_harmed_during_the_run_is_noticed_during_the_run(
-    run: Any, tmp_path: Path, harm: Callable[[Path], None], rotation: Rotation, capfd: pytest.CaptureFixture[str]
+    run: Any,
+    tmp_path: Path,
+    harm: Callable[[Path], None],
+    rotation: Rotation,
+    told: Callable[[], str],
 ) -> None:
     folder = tmp_path / "mounted"
     folder.mkdir()
@@ -88,9 +98,9 @@ def test_a_file_that_is_harmed_during_the_run_is_noticed_during_the_run(
     assert status(run) == "lossy"
     with pytest.raises(Failure, match="incomplete, the recorder ended with code 1"):
         recorder.finish()
-    told = capfd.readouterr().err
-    assert "the file was" in told
-    assert "the run goes on" in told
+    heard = told()
+    assert "the file was" in heard
+    assert "the run goes on" in heard
 
 
 def test_a_file_harmed_after_its_last_block_is_noticed_at_the_end(run: Any, tmp_path: Path) -> None:
