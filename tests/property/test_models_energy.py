@@ -51,9 +51,8 @@ def test_no_step_gains_more_energy_than_the_terminals_put_in(
     size += abs(drive.push * end.turned)
     # the turned angle is a difference: good to 1e-15 rad, and to the bits of the final speed in the time constant
     strength = drive.resistance * drive.damping + drive.constant**2
-    final_speed = (
-        abs(drive.voltage) * drive.constant + drive.resistance * (drive.dry_torque + abs(drive.push))
-    ) / strength
+    torque = drive.dry_torque + abs(drive.push)
+    final_speed = (abs(drive.voltage) * drive.constant + drive.resistance * torque) / strength
     good_to = 1e-15 + 2.3e-16 * final_speed * drive.resistance * drive.inertia / strength
     rounding = 1e-9 * size + good_to * torque + 1e-18
     assert stored(end, drive) - stored(start, drive) <= put_in - losses + rounding
