@@ -85,10 +85,15 @@ def mutated(content: bytes, rng: random.Random) -> bytes:
     return bytes(data)
 
 
+def _peak_kib() -> int:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
 def run(cases: int, seed: int, say: Callable[[str], None] = print) -> int:
     """Run that many cases; return how many ended in anything but channels or one line."""
     wrong = read = 0
     began = time.monotonic()
+    before = _peak_kib()  # of what this process did before
     signal.signal(signal.SIGALRM, _too_long)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -113,7 +118,7 @@ def run(cases: int, seed: int, say: Callable[[str], None] = print) -> int:
                 say(f"case {case} ({ending}): {type(error).__name__}: {str(error)[:200]}")
             finally:
                 signal.alarm(0)
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    memory = _peak_kib() - before
     say(f"{cases} cases in {time.monotonic() - began:.0f} s: {read} read, {wrong} wrong; {memory // 1024} MiB")
     return wrong + (memory > MOST_KIB)
 

@@ -77,10 +77,15 @@ def _recording(path: Path) -> None:
         pass
 
 
+def _peak_kib() -> int:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
 def run(cases: int, seed: int, recordings: list[Path] | None = None, say: Callable[[str], None] = print) -> int:
     """Run that many cases; return how many ended in anything but a result or one line for each problem."""
     wrong = read = 0
     began = time.monotonic()
+    before = _peak_kib()  # of what this process did before
     signal.signal(signal.SIGALRM, _too_long)
     choices = kinds(recordings or [])
     with tempfile.TemporaryDirectory() as name:
@@ -106,7 +111,7 @@ def run(cases: int, seed: int, recordings: list[Path] | None = None, say: Callab
                 say(f"case {case} ({good.name}): {type(error).__name__}: {str(error)[:200]}")
             finally:
                 signal.alarm(0)
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    memory = _peak_kib() - before
     say(f"{cases} cases in {time.monotonic() - began:.0f} s: {read} read, {wrong} wrong; {memory // 1024} MiB")
     return wrong + (memory > MOST_KIB)
 
