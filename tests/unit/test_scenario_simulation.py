@@ -12,6 +12,7 @@ from hilplant import Bench, BenchError, Result, load_bench, simulate
 from hilplant.failure import Failure
 from hilplant.recording import tables
 from hilplant.resources import shipped
+from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX
 from hilplant.simulation.run import simulate_to_file
 from hilplant.simulation.scenario import load_scenario
 
@@ -176,6 +177,7 @@ def test_a_bench_with_mistakes_is_not_simulated(tmp_path: Path) -> None:
 
 def test_a_result_goes_straight_to_a_file_or_says_why_not(tmp_path: Path) -> None:
     said = simulate_to_file("default", "stall", tmp_path / "out.csv")
-    assert said.endswith("out.csv: 8000 rows, 35 columns")
+    columns = len({"time_s", *OUTPUT_INDEX, *INPUT_INDEX})
+    assert said.endswith(f"out.csv: 8000 rows, {columns} columns")
     with pytest.raises(tables.TableError, match=r"no/out\.csv: cannot be written: there is no folder .*no$"):
         simulate_to_file("default", "stall", tmp_path / "no" / "out.csv")
