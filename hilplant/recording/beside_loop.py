@@ -41,6 +41,7 @@ def recording(bench: LoopedBench, record: RecordTo | None) -> Iterator[Ring]:
     if record is None:
         with contextlib.closing(Ring.create(ROW_WIDTH)) as ring:  # for all who want to look
             yield ring
+            ring.close_writer()
         return
     need("recording")
     from hilplant.recording.recorder import start_recorder
@@ -55,4 +56,5 @@ def recording(bench: LoopedBench, record: RecordTo | None) -> Iterator[Ring]:
             if not ring.rows_written:  # nothing has started: an empty recording would be in the way of the next attempt
                 recorder.remove()
     finally:
+        ring.close_writer()
         ring.close()

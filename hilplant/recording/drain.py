@@ -9,14 +9,14 @@ import contextlib
 import json
 import os
 import select
-import signal
 import sys
 import time
 from pathlib import Path
 
 from hilplant.recording.rotation import Rotation
-from hilplant.recording.writer import RecordingWriter
+from hilplant.recording.writer import RecordingWriter, late_description
 from hilplant.runtime.ring import Ring
+from hilplant.runtime.scheduling import stand_back
 
 _LOOK_EVERY_S = 0.1
 _WRITE_EVERY_S = 0.5
@@ -32,7 +32,7 @@ def record(ring: Ring, writer: RecordingWriter) -> None:
         When the file is no longer what it was, or the disk takes no more; the ring tells it then.
     """
     written_s = synced_s = time.monotonic()
-    ended = False
+    ended, lost_before = False, ring.lost
     try:
         while not ended:
             ready, _, _ = select.select([sys.stdin], [], [], _LOOK_EVERY_S)
@@ -46,34 +46,33 @@ def record(ring: Ring, writer: RecordingWriter) -> None:
             if now_s - synced_s >= _SYNC_EVERY_S:
                 writer.sync()
                 synced_s = now_s
+        ring.leave()
         writer.write(last=True)
-        writer.close(ring.lost)
+        writer.close(ring.lost - lost_before)
     except OSError:
         ring.fail()
         writer.abandon()
         raise
 
 
-def _step_aside(loop_cpu: int | None) -> None:
-    """Leave the signals of the terminal, the loop's priority and the loop's CPU to the daemon."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, signal.SIG_IGN)
-    with contextlib.suppress(OSError, AttributeError):  # only Linux has them all
-        os.nice(5)
-        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
-        if others := os.sched_getaffinity(0) - {loop_cpu}:
-            os.sched_setaffinity(0, others)
+def _of_now(ring: Ring, metadata: dict[str, str]) -> dict[str, str]:
+    """Return the description of a recording that begins with the next row."""
+    ring.skip_history()
+    while not (ring.unread or ring.writer_closed):
+        time.sleep(_LOOK_EVERY_S / 100)
+    return late_description(metadata, ring)
 
 
 def main(ring_name: str, path: str, loop_cpu: str) -> int:
     """Record the ring `ring_name` into the new file `path`, or into parts of that name."""
-    _step_aside(int(loop_cpu) if loop_cpu else None)
+    stand_back(int(loop_cpu) if loop_cpu else None)
     order = json.loads(sys.stdin.readline())
     started = False
     try:
         with contextlib.closing(Ring.attach(ring_name)) as ring:
             rotation = Rotation.from_json(order["rotation"])
-            writer = RecordingWriter(Path(path), order["metadata"], ring.row_width, rotation)
+            metadata = _of_now(ring, order["metadata"]) if order["late"] else order["metadata"]
+            writer = RecordingWriter(Path(path), metadata, ring.row_width, rotation)
             writer.take(ring)
             started = _say_ready(writer)
             if started:

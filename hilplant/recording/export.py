@@ -127,5 +127,5 @@ def _columns(rows: pa.Table, step_ns: int) -> Columns:
 
 def signal_columns(recording: Recording) -> tuple[Columns, Mapping[str, str]]:
     """Return all signals by tick, and their units: outputs by their name, ``in_...``, ``status_...``."""
-    names = [name for name in schema().names if name != "frames"]
+    names = [name for name in schema().names if name not in ("frames", "events")]
     return _columns(recording.table(names), recording.run.step_ns), UNITS

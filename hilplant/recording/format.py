@@ -1,10 +1,10 @@
 """What a recording looks like: an Arrow IPC stream, one row for each tick, and all it takes to repeat it.
 
 Columns: ``tick``, ``deadline_ns``, ``in.<name>``, ``out.<name>``, ``status.<name>`` as in ``signals.py``, and
-``frames``, the frames seen in that tick. Where a tick's row was lost but not its frames, all is null except
-``tick`` and ``frames``. In the file the outputs are differences, see :mod:`hilplant.recording.differences`; a reader
-gives them as float64. Each batch carries the plant's state before its first row, and a checksum of it and of its
-values, so that damage does not pass for data.
+``frames``, the frames seen in that tick, and ``events``, what became of the commands that came beside the bus. Where a
+tick's row was lost but not its frames and events, all is null except these and ``tick``. In the file the outputs are
+differences, see :mod:`hilplant.recording.differences`; a reader gives them as float64. Each batch carries the plant's
+state before its first row, and a checksum of it and of its values, so that damage does not pass for data.
 """
 
 import base64
@@ -15,11 +15,13 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from hilplant.models.records import PARAMETER_INDEX
 from hilplant.recording.differences import decode, encode
+from hilplant.runtime.commands import COMMAND_DTYPE, KINDS, OUTCOMES, OWNERS, PARAMETER
 from hilplant.runtime.ring import BITRATE_SWITCH, ERROR, EXTENDED, FD, REMOTE, SENT
 from hilplant.signals import INPUTS, OUTPUTS, STATUS
 
-FORMAT_VERSION = "2"
+FORMAT_VERSION = "3"
 KEY_PREFIX = "hilplant."
 CHECKSUM_KEY = b"hilplant.crc32"
 STATE_KEY = b"hilplant.state"
@@ -48,6 +50,17 @@ FRAME_TYPE = pa.struct(
         pa.field("data", pa.binary(), nullable=False),
     ]
 )
+EVENT_TYPE = pa.struct(
+    [
+        pa.field("time_ns", pa.int64(), nullable=False),
+        pa.field("client", pa.uint32(), nullable=False),
+        pa.field("number", pa.uint32(), nullable=False),
+        pa.field("value", pa.float64(), nullable=False),
+        *(pa.field(name, pa.string(), nullable=False) for name in ("kind", "name", "owner", "outcome", "text")),
+    ]
+)
+_NO_EVENTS = np.empty(0, COMMAND_DTYPE)
+_INPUT_NAMES, _PARAMETER_NAMES = tuple(signal.name for signal in INPUTS), tuple(PARAMETER_INDEX)
 
 
 def schema(metadata: dict[str, str] | None = None, stored: bool = False) -> pa.Schema:
@@ -58,14 +71,15 @@ def schema(metadata: dict[str, str] | None = None, stored: bool = False) -> pa.S
         pa.field("deadline_ns", pa.int64()),
         *(pa.field(name, output if name in OUTPUT_COLUMNS else pa.float64()) for name in SIGNAL_COLUMNS),
         pa.field("frames", pa.list_(FRAME_TYPE), nullable=False),
+        pa.field("events", pa.list_(EVENT_TYPE), nullable=False),
     ]
     return pa.schema(fields, {KEY_PREFIX + key: value for key, value in (metadata or {}).items()})
 
 
-def batch(rows: NDArray[np.float64], frames: NDArray[np.void]) -> pa.RecordBatch:
-    """Join rows and frames of the ring by their tick, as they are stored; both are in the order of their ticks."""
+def batch(rows: NDArray[np.float64], frames: NDArray[np.void], events: NDArray[np.void] = _NO_EVENTS) -> pa.RecordBatch:
+    """Join rows, frames and events of the ring by their tick, as they are stored; each is in the order of its ticks."""
     row_ticks = rows[:, 0].astype(np.int64)
-    ticks = np.union1d(row_ticks, frames["tick"])
+    ticks = np.union1d(np.union1d(row_ticks, frames["tick"]), events["tick"])
     places = np.searchsorted(ticks, row_ticks)
     lost = np.ones(len(ticks), np.bool_)
     lost[places] = False
@@ -78,9 +92,10 @@ def batch(rows: NDArray[np.float64], frames: NDArray[np.void]) -> pa.RecordBatch
     for name, column in zip(SIGNAL_COLUMNS, values, strict=True):
         kept = column if name in OUTPUT_COLUMNS else column.view(np.float64)
         arrays.append(pa.array(kept, mask=lost, from_pandas=False))
-    bounds = np.append(np.searchsorted(frames["tick"], ticks), len(frames)).astype(np.int32)
     columns = schema(stored=True)
-    arrays.append(pa.ListArray.from_arrays(pa.array(bounds), _frame_structs(frames), type=columns.field("frames").type))
+    for name, records, structs in (("frames", frames, _frame_structs), ("events", events, _event_structs)):
+        bounds = np.append(np.searchsorted(records["tick"], ticks), len(records)).astype(np.int32)
+        arrays.append(pa.ListArray.from_arrays(pa.array(bounds), structs(records), type=columns.field(name).type))
     return pa.RecordBatch.from_arrays(arrays, schema=columns)
 
 
@@ -116,21 +131,54 @@ def _frame_structs(frames: NDArray[np.void]) -> pa.StructArray:
     return pa.StructArray.from_arrays(arrays, fields=list(FRAME_TYPE))
 
 
+def _event_structs(events: NDArray[np.void]) -> pa.StructArray:
+    texts = {"kind": [KINDS[kind] for kind in events["kind"]], "owner": [OWNERS[owner] for owner in events["owner"]]}
+    texts["outcome"] = [OUTCOMES[outcome] for outcome in events["outcome"]]
+    texts["name"] = [element_name(int(e["kind"]), int(e["element"])) for e in events]
+    texts["text"] = [bytes(text).decode(errors="replace") for text in events["text"]]
+    arrays = [
+        pa.array(texts[field.name], pa.string()) if field.name in texts else pa.array(events[field.name].copy())
+        for field in EVENT_TYPE
+    ]
+    return pa.StructArray.from_arrays(arrays, fields=list(EVENT_TYPE))
+
+
+def element_name(kind: int, element: int) -> str:
+    """Return the name of the input or the parameter that a command is about; nothing where it is about none."""
+    names = _PARAMETER_NAMES if kind == PARAMETER else _INPUT_NAMES if kind < PARAMETER else ()
+    return names[element] if 0 <= element < len(names) else ""
+
+
+def parameter_changes(rows: pa.RecordBatch) -> list[tuple[int, int, float]]:
+    """Return tick, index and value of each element of the parameter row that was changed."""
+    events = rows.column("events")
+    if not len(events.flatten()):
+        return []
+    return [
+        (tick, PARAMETER_INDEX[event["name"]], event["value"])
+        for tick, found in zip(rows.column("tick").to_pylist(), events.to_pylist(), strict=True)
+        for event in found
+        if event["kind"] == "parameter" and event["outcome"] == "applied"
+    ]
+
+
 def checksum(values: pa.RecordBatch, state: bytes = b"") -> bytes:
     """CRC-32 over a state's text and the values of a batch, whatever their layout in memory or on disk."""
     crc = zlib.crc32(state)
-    for column in values.columns[:-1]:
+    for column in values.columns[:-2]:
         crc = zlib.crc32(column.is_null().to_numpy(zero_copy_only=False).tobytes(), crc)
         crc = zlib.crc32(column.fill_null(0).to_numpy(zero_copy_only=False).tobytes(), crc)
-    frames = values.column("frames")
-    crc = zlib.crc32(frames.value_lengths().to_numpy(zero_copy_only=False).tobytes(), crc)
-    for part in frames.flatten().flatten():
-        crc = zlib.crc32(_bytes(part), crc)
+    for lists in values.columns[-2:]:
+        crc = zlib.crc32(lists.value_lengths().to_numpy(zero_copy_only=False).tobytes(), crc)
+        for part in lists.flatten().flatten():
+            crc = zlib.crc32(_bytes(part), crc)
     return b"%08x" % crc
 
 
 def _bytes(column: Any) -> bytes:
     if column.type == pa.binary():
         return b"".join(len(item).to_bytes() + item for item in column.to_pylist())
+    if column.type == pa.string():
+        return b"".join(len(item).to_bytes(2) + item.encode() for item in column.to_pylist())
     plain: bytes = column.to_numpy(zero_copy_only=False).tobytes()
     return plain

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,14 +71,27 @@ def describe(bench: RecordedBench, start_utc: datetime) -> dict[str, str]:
     return texts | {"crc32": _checksum(texts)}
 
 
-def part_description(
-    metadata: dict[str, str], part: int, first: tuple[int, int], state_row: NDArray[np.float64]
-) -> dict[str, str]:
-    """Return the metadata of a later part of the same run; `first` is its first tick and when that was due [ns]."""
-    begin = {"first_tick": str(first[0]), "first_ns": str(first[1])}
-    changes = {"part": str(part), **begin, "state_row": _encode(state_row)}
+class Begin(NamedTuple):
+    """Where a part begins: its first tick, when that was due [ns], the state before it, the parameters in it."""
+
+    tick: int
+    due_ns: int
+    state_row: NDArray[np.float64]
+    parameter_row: NDArray[np.float64]
+
+
+def part_description(metadata: dict[str, str], part: int, begin: Begin) -> dict[str, str]:
+    """Return the metadata of a part of the same run that does not begin with the run."""
+    first = {"first_tick": str(begin.tick), "first_ns": str(begin.due_ns)}
+    rows = {"state_row": _encode(begin.state_row), "parameter_row": _encode(begin.parameter_row)}
+    changes = {"part": str(part), **first, **rows}
     texts = {key: text for key, text in (metadata | changes).items() if key != "crc32"}
     return texts | {"crc32": _checksum(texts)}
+
+
+def parameters_of(metadata: dict[str, str]) -> NDArray[np.float64]:
+    """Return the packed parameters of a description."""
+    return _decode(metadata["parameter_row"]).copy()
 
 
 def parse(metadata: dict[str, str]) -> RunDescription:

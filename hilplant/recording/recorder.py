@@ -34,6 +34,7 @@ class Recorder:
         self._ring = ring
         self._path = path
         self._ending = False
+        self._lost_before = ring.lost
         self._watch = threading.Thread(target=self._wait, daemon=True, name="recorder watch")
         self._watch.start()
 
@@ -52,7 +53,7 @@ class Recorder:
         return self._watch.is_alive()
 
     def finish(self, timeout: float = 30.0) -> None:
-        """Close the ring and wait until everything in it is in the file.
+        """Wait until everything that is in the ring now is in the file.
 
         Raises
         ------
@@ -60,7 +61,6 @@ class Recorder:
             When the recorder had died, or does not come to an end in `timeout` seconds.
         """
         self._ending = True
-        self._ring.close_writer()
         with contextlib.suppress(OSError):
             _pipe(self._child.stdin).close()
         self._watch.join(timeout)
@@ -69,7 +69,7 @@ class Recorder:
         _pipe(self._child.stdout).close()
         if self._child.returncode != 0:
             raise Failure(f"{self._path}: incomplete, {self._cause()}")
-        if lost := self._ring.lost:
+        if lost := self._ring.lost - self._lost_before:
             raise Failure(f"{self._path}: incomplete, the recorder was too slow for {lost} ticks or frames")
 
     def remove(self) -> None:
@@ -105,10 +105,40 @@ def start_recorder(
     Failure
         When the file exists already or cannot be written, or its ending is that of another format.
     """
-    rotation = rotation or Rotation()
     start_utc = datetime.now(UTC)
-    path = _free(path / _name(bench.name, start_utc) if path.is_dir() else path, rotation)
-    order = {"metadata": describe(bench, start_utc), "rotation": asdict(rotation)}
+    path = path / _name(bench.name, start_utc) if path.is_dir() else path
+    return _start(ring, path, describe(bench, start_utc), loop_cpu, rotation or Rotation())
+
+
+def description_now(bench: RecordedBench) -> dict[str, str]:
+    """Return what recordings that begin late will say of a run that starts now."""
+    return describe(bench, datetime.now(UTC))
+
+
+def start_late(ring: Ring, path: Path, metadata: dict[str, str], loop_cpu: int | None = None) -> Recorder:
+    """Start a recorder in the midst of the run that `metadata` describes: it begins with the loop's next row.
+
+    Raises
+    ------
+    Failure
+        As :func:`start_recorder`.
+    """
+    return _start(ring, path, metadata, loop_cpu, None)
+
+
+def _start(
+    ring: Ring, path: Path, metadata: dict[str, str], loop_cpu: int | None, rotation: Rotation | None
+) -> Recorder:
+    """Start a recorder; one without rotation begins late.
+
+    Raises
+    ------
+    Failure
+        When the file exists already or cannot be written, or its ending is that of another format.
+    """
+    late, rotation = rotation is None, rotation or Rotation()
+    path = _free(path, rotation)
+    order = {"metadata": metadata, "rotation": asdict(rotation), "late": late}
     command = [sys.executable, "-m", "hilplant.recording.drain", ring.name, str(path)]
     child = subprocess.Popen(
         [*command, "" if loop_cpu is None else str(loop_cpu)],

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.models.plant import simulate_rows
-from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS
+from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, parameter_changes
 from hilplant.recording.metadata import current_build
 from hilplant.recording.reader import Block, Recording, matrix, read_recording
 from hilplant.signals import OUTPUTS
@@ -58,6 +58,7 @@ class _Comparison:
     def __init__(self, recording: Recording) -> None:
         self._run = recording.run
         self._state = recording.run.state_row.copy()
+        self._parameters = recording.run.parameter_row.copy()
         self._next = recording.run.first_tick
         self.ticks = 0
         self.difference: Difference | None = None
@@ -66,7 +67,9 @@ class _Comparison:
     def add(self, block: Block) -> None:
         """Compare a block: to the first gap in it; and after a gap before it from the state that the block tells."""
         rows = block.rows.filter(block.rows.column("deadline_ns").is_valid())
+        changes = parameter_changes(block.rows)
         if not len(rows):
+            self._change(changes)
             return
         ticks = rows.column("tick").to_numpy()
         if ticks[0] != self._next:
@@ -76,11 +79,22 @@ class _Comparison:
             self._state = block.state_row.copy()
         unbroken = self._count_gaps(ticks)
         if self.difference is not None or not known:
+            self._change(changes)
             return
         inputs, recorded = matrix(rows, INPUT_COLUMNS)[:unbroken], matrix(rows, OUTPUT_COLUMNS)[:unbroken]
         replayed = np.full_like(recorded, np.nan)
-        simulate_rows(self._state, inputs, self._run.parameter_row, self._run.tables, replayed)
+        first = 0
+        for tick, index, value in [*changes, (int(ticks[-1]) + 1, None, 0.0)]:
+            until = int(np.searchsorted(ticks[:unbroken], tick))
+            simulate_rows(self._state, inputs[first:until], self._parameters, self._run.tables, replayed[first:until])
+            first = until
+            if index is not None:
+                self._parameters[index] = value
         self._compare(ticks, recorded, replayed)
+
+    def _change(self, changes: list[tuple[int, int, float]]) -> None:
+        for _, index, value in changes:
+            self._parameters[index] = value
 
     def _count_gaps(self, ticks: NDArray[np.int64]) -> int:
         """Note the ticks that are missing in a block, and return how many rows come before the first of them."""

@@ -48,5 +48,6 @@ def _times_ns(rows: pa.RecordBatch) -> np.ndarray[tuple[int], np.dtype[np.int64]
     deadlines = rows.column("deadline_ns")
     times: np.ndarray[tuple[int], np.dtype[np.int64]] = deadlines.fill_null(0).to_numpy(zero_copy_only=False).copy()
     for at in np.flatnonzero(~deadlines.is_valid().to_numpy(zero_copy_only=False)):
-        times[at] = rows.column("frames")[int(at)][0]["time_ns"].as_py()
+        seen = rows.column("frames")[int(at)] or rows.column("events")[int(at)]
+        times[at] = seen[0]["time_ns"].as_py()
     return times

@@ -6,17 +6,43 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.models.records import STATE_INDEX
 from hilplant.recording.format import CHECKSUM_KEY, LOST_KEY, SIGNAL_COLUMNS, STATE_KEY, batch, checksum, state_text
-from hilplant.recording.metadata import part_description
+from hilplant.recording.metadata import Begin, parameters_of, part_description
 from hilplant.recording.part import Part
 from hilplant.recording.rotation import Rotation, part_path
+from hilplant.runtime.commands import APPLIED, COMMAND_DTYPE, PARAMETER
 from hilplant.runtime.ring import FRAME_DTYPE, Ring
 
-_STATE_AT = 2 + len(SIGNAL_COLUMNS)
+_STATE = slice(2 + len(SIGNAL_COLUMNS), 2 + len(SIGNAL_COLUMNS) + len(STATE_INDEX))
 _NEVER_NS = 1 << 62
 
 Rows = NDArray[np.float64]
 Frames = NDArray[np.void]
+Events = NDArray[np.void]
+_NO_EVENTS = np.empty(0, COMMAND_DTYPE)
+
+
+class EventsLost(OSError):
+    """Commands were overwritten before they were recorded: replay could not repeat the run."""
+
+
+def change_parameters(parameter_row: Rows, events: Events) -> None:
+    """Change a parameter row as these events have changed the loop's."""
+    changes = events[(events["kind"] == PARAMETER) & (events["outcome"] == APPLIED)]
+    for change in changes:
+        parameter_row[change["element"]] = change["value"]
+
+
+def late_description(metadata: dict[str, str], ring: Ring) -> dict[str, str]:
+    """Return the description of a recording that begins in the midst of a run, with the first row it takes."""
+    row = ring.next_unread()
+    events = ring.events.since(0)
+    if events.lost:
+        raise EventsLost(0, "there were too many commands for a recording that begins late")
+    parameter_row = parameters_of(metadata)
+    change_parameters(parameter_row, events.records[events.records["tick"] < row[0]])
+    return part_description(metadata, 1, Begin(int(row[0]), int(row[1]), row[_STATE], parameter_row))
 
 
 class RecordingWriter:
@@ -37,34 +63,46 @@ class RecordingWriter:
         self._kept: deque[Path] = deque()
         self._rows = [np.empty((0, row_width))]
         self._frames = [np.empty(0, FRAME_DTYPE)]
+        self._events = [_NO_EVENTS]
+        self._event_place, self._parameters = 0, parameters_of(metadata)
+        self._first_tick = int(metadata["first_tick"])
         self._first_ns: int | None = None  # when the first tick of the part was due
         self._part = self._open(metadata)
 
     def take(self, ring: Ring) -> None:
-        """Take what is in the ring: the rows first, so that all frames of these rows are there."""
-        self.add(ring.read_rows(), ring.read_frames())
+        """Take what is in the ring: the rows first, so that all frames and events of these rows are there.
 
-    def add(self, rows: Rows, frames: Frames) -> None:
-        """Take rows, and frames of these rows and later ones."""
+        Raises
+        ------
+        EventsLost
+            When events were overwritten.
+        """
+        rows, frames = ring.read_rows(), ring.read_frames()
+        events, self._event_place, lost = ring.events.since(self._event_place)
+        if lost:
+            raise EventsLost(0, f"{lost} commands were overwritten before they were recorded")
+        self.add(rows, frames, events[events["tick"] >= self._first_tick])
+
+    def add(self, rows: Rows, frames: Frames, events: Events = _NO_EVENTS) -> None:
+        """Take rows, and frames and events of these rows and later ones."""
         self._rows.append(rows)
         self._frames.append(frames)
+        self._events.append(events)
 
     def write(self, last: bool = False) -> None:
-        """Write what was taken; frames of a tick whose row is still to come wait, unless it never will."""
-        rows, frames = np.concatenate(self._rows), np.concatenate(self._frames)
-        whole = len(frames)
-        if not last:
-            newest = rows[-1, 0] if len(rows) else -np.inf
-            whole = int(np.searchsorted(frames["tick"], newest, side="right"))
-        self._rows, self._frames = [rows[:0]], [frames[whole:]]
-        frames = frames[:whole]
+        """Write what was taken; what is of a tick whose row is still to come waits, unless it never will."""
+        rows = np.concatenate(self._rows)
+        frames, events = np.concatenate(self._frames), np.concatenate(self._events)
+        newest = rows[-1, 0] if len(rows) else -np.inf
+        beside, waiting = _parted((frames, events), np.inf if last else newest + 1)
+        self._rows, self._frames, self._events = [rows[:0]], [waiting[0]], [waiting[1]]
         while len(rows):
             count = int(np.searchsorted(rows[:, 1], self._end_ns(rows[0, 1])))
-            until = len(frames) if count == len(rows) else int(np.searchsorted(frames["tick"], rows[count, 0]))
-            self._write_block(rows[:count], frames[:until])
-            rows, frames = rows[count:], frames[until:]
-        if len(frames):
-            self._write_block(rows, frames)
+            now, beside = _parted(beside, np.inf if count == len(rows) else rows[count, 0])
+            self._write_block(rows[:count], *now)
+            rows = rows[count:]
+        if len(beside[0]) or len(beside[1]):
+            self._write_block(rows, *beside)
 
     @property
     def path(self) -> Path:
@@ -99,12 +137,12 @@ class RecordingWriter:
             self._first_ns = None  # the next block begins a part
         return int(next_ns if self._first_ns is None else self._first_ns) + length_ns
 
-    def _write_block(self, rows: Rows, frames: Frames) -> None:
+    def _write_block(self, rows: Rows, frames: Frames, events: Events) -> None:
         begins = len(rows) > 0 and self._first_ns is None
         if begins and self._part.blocks:
             self._next_part(rows)
-        values = batch(rows, frames)
-        state = state_text(rows[0, _STATE_AT:]) if len(rows) else b""
+        values = batch(rows, frames, events)
+        state = state_text(rows[0, _STATE]) if len(rows) else b""
         metadata = {CHECKSUM_KEY: checksum(values, state)} | ({STATE_KEY: state} if state else {})
         block = self._part.block(values, metadata)
         limit = self._rotation.part_bytes
@@ -113,6 +151,7 @@ class RecordingWriter:
             block = self._part.block(values, metadata)
             begins = True
         self._part.append(block)
+        change_parameters(self._parameters, events)
         if begins:
             self._first_ns = int(rows[0, 1])
 
@@ -120,8 +159,8 @@ class RecordingWriter:
         """Close the part and open the next, which begins with these rows."""
         self.close()
         self._number += 1
-        begin = part_description(self._metadata, self._number, (int(rows[0, 0]), int(rows[0, 1])), rows[0, _STATE_AT:])
-        self._part = self._open(begin)
+        begin = Begin(int(rows[0, 0]), int(rows[0, 1]), rows[0, _STATE], self._parameters)
+        self._part = self._open(part_description(self._metadata, self._number, begin))
         while self._rotation.keep and len(self._kept) > self._rotation.keep:
             self._kept.popleft().unlink(missing_ok=True)
 
@@ -130,3 +169,9 @@ class RecordingWriter:
         part = Part(path, metadata)
         self._kept.append(path)
         return part
+
+
+def _parted(records: tuple[Frames, Events], tick: float) -> tuple[tuple[Frames, Events], tuple[Frames, Events]]:
+    """Return what is of ticks before `tick`, and the rest."""
+    (frames, events), at = records, [int(np.searchsorted(each["tick"], tick)) for each in records]
+    return (frames[: at[0]], events[: at[1]]), (frames[at[0] :], events[at[1] :])

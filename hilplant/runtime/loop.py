@@ -1,4 +1,4 @@
-"""The 1 kHz loop: frames in, one step of the plant, frames out, one row for the recorder.
+"""The 1 kHz loop: frames in, one step of the plant, frames out, one row for who looks on.
 
 Deadlines are absolute: tick k is due at start + k * step. A tick that comes a whole period late gives up the periods it
 missed, counts them, and goes on with the next deadline; the step itself is never stretched.
@@ -15,8 +15,12 @@ from hilplant.bus.node import Node
 from hilplant.models.plant import tick as plant_tick
 from hilplant.models.records import STATE_INDEX
 from hilplant.runtime.clock import Clock
+from hilplant.runtime.commands import BUS, SAFE_STATE, ChannelCommand
+from hilplant.runtime.intake import Intake
 from hilplant.runtime.latency import Latency
 from hilplant.runtime.lost_time import LostTime
+from hilplant.runtime.mailbox import Mailbox
+from hilplant.runtime.ownership import Ownership
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.watchdog import Watchdog
 from hilplant.signals import INPUTS, MODES, OUTPUT_INDEX, OUTPUTS, STATUS, STATUS_INDEX
@@ -30,8 +34,11 @@ _FIRST_STATUS = _FIRST_OUTPUT + len(OUTPUTS)
 
 _FIRST_STATE = _FIRST_STATUS + len(STATUS)
 
-#: Width of a row in the ring: tick, deadline_ns, inputs, outputs, status, the plant's state before the tick.
-ROW_WIDTH = _FIRST_STATE + len(STATE_INDEX)
+#: Where the owners of the inputs begin in a row, indices of ``commands.OWNERS``.
+FIRST_OWNER = _FIRST_STATE + len(STATE_INDEX)
+
+#: Width of a row in the ring: tick, deadline_ns, inputs, outputs, status, the plant's state before the tick, owners.
+ROW_WIDTH = FIRST_OWNER + len(INPUTS)
 
 _TICK, _MODE, _OVERRUNS, _WORST, _RING_LOST, _RECORDING = (
     STATUS_INDEX[name] for name in ("tick", "mode", "overruns", "worst_latency_us", "ring_lost", "recording")
@@ -113,11 +120,22 @@ class Loop:
         self._inputs = self._line[_FIRST_INPUT:_FIRST_OUTPUT]
         self._outputs = self._line[_FIRST_OUTPUT:_FIRST_STATUS]
         self._status = self._line[_FIRST_STATUS:_FIRST_STATE]
-        self._before = self._line[_FIRST_STATE:]
+        self._before = self._line[_FIRST_STATE:FIRST_OWNER]
+        self._owners = self._line[FIRST_OWNER:]
+        self._parameters = plant.parameter_row.copy()
+        self._ownership = Ownership(node.values, self._owners)
+        #: Takes commands at a tick's start; None until :meth:`listen`.
+        self.intake: Intake | None = None
+        self._was_safe = False
         self._state = plant.state_row.copy()
         self._published: list[float] = [0.0] * (len(OUTPUTS) + len(STATUS))
         self._bus_ns = 0
         node.observe = self._observe if ring is not None else None
+
+    def listen(self, mailbox: Mailbox, tell: Callable[[ChannelCommand], None]) -> Intake:
+        """Take commands from a mailbox at each tick's start, and give the answers to `tell`."""
+        self.intake = Intake(mailbox, self._ownership, self._parameters, tell)
+        return self.intake
 
     def run(self, ticks: int | None, stop: Callable[[], bool], watchdog: Watchdog) -> None:
         """Tick until `ticks` periods have passed (None: for ever), `stop` says so, or the overrun policy ends it."""
@@ -147,6 +165,8 @@ class Loop:
         """Do one tick; `bus_ns` is its deadline counted from the loop's start."""
         self._bus_ns = bus_ns
         self._behind = self.lost_time.behind(bus_ns)
+        if self.intake is not None:
+            self.intake.begin(self.progress.ticks, bus_ns)
         node = self._node
         node.receive(bus_ns, shed=bus_ns < self._degraded_until_ns)
         self._step(safe=node.lost, mode=self._mode(bus_ns))
@@ -155,15 +175,21 @@ class Loop:
 
     def _step(self, safe: bool, mode: float) -> None:
         self._inputs[:] = self._node.values
+        if self._was_safe:
+            self._owners[:] = BUS
         if not safe and self.control is not None:
             self.control_stopped = not self.control(self._bus_ns, self._state, self._inputs)
             if self.control_stopped:
                 self.control, mode = None, SAFE
-        if safe or self.control_stopped:
+        if self._ownership.active:
+            self._ownership.impose(self._inputs)
+        self._was_safe = safe or self.control_stopped
+        if self._was_safe:
             for index, value in self._plant.safe:
                 self._inputs[index] = value
+                self._owners[index] = SAFE_STATE
         self._before[:] = self._state
-        plant_tick(self._state, self._inputs, self._plant.parameter_row, self._plant.tables, self._outputs)
+        plant_tick(self._state, self._inputs, self._parameters, self._plant.tables, self._outputs)
         self._published = [*self._outputs.tolist(), *self._status_values(mode)]
 
     def _record(self) -> None:

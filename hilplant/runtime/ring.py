@@ -1,8 +1,10 @@
-"""The ring between the real-time loop and the processes that watch it: shared memory, one writer, one reader.
+"""The ring between the real-time loop and the processes beside it: rows, frames, events out, commands in.
 
-Nothing in it waits. The writer fills a slot in place, then moves the head; the reader copies, then moves the
-tail; neither writes what the other writes. A full ring loses the new row or frame and counts it. Before a
-reader has come the oldest are overwritten instead: a run that nobody records counts nothing as lost.
+Nothing in it waits. The writer fills a slot in place, then moves the head; the recorder copies, then moves the
+tail; neither writes what the other writes. A ring that is full for the recorder loses the new row or frame and counts
+it. Without a recorder the oldest are overwritten instead: a run that nobody records counts nothing as lost. Any number
+of followers (:mod:`hilplant.runtime.follower`) read beside it, each with a place of its own that the writer does not
+know. Events are overwritten always; commands go the other way, see :mod:`hilplant.runtime.mailbox`.
 
 What it relies on: an aligned 8-byte store is one store, and the stores of one thread become visible in order.
 x86-64 guarantees both. ARM64 guarantees the first only; there, data and head lie hundreds of instructions of
@@ -15,6 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bus.frame import Frame
+from hilplant.runtime.commands import COMMAND_DTYPE
+from hilplant.runtime.lane import Lane
+from hilplant.runtime.mailbox import Mailbox
 from hilplant.runtime.shared_memory import SharedMemory
 
 SENT, EXTENDED, FD, BITRATE_SWITCH, REMOTE, ERROR = (1 << bit for bit in range(6))
@@ -34,13 +39,15 @@ FRAME_DTYPE = np.dtype(
 _FRAME = struct.Struct("<qqIBBH64s")
 _FRAME_BYTES = _FRAME.size
 
-_MAGIC = 0x676E6972_6C6968  # "hilring"
-_HEADER_BYTES = 256
+_MAGIC = 0x326E6972_6C6968  # "hilrin2"
+_HEADER_BYTES = 512
+_EVENTS, _COMMANDS = 8192, 512
 # Places in the header, in 8-byte words. What never changes, what the writer writes and what the reader writes
 # lie on cache lines of their own.
 _MAGIC_AT, _WIDTH, _ROWS, _FRAMES = range(4)
 _ROW_HEAD, _FRAME_HEAD, _LOST, _CLOSED = range(8, 12)
 _ROW_TAIL, _FRAME_TAIL, _READER, _FAILED = range(16, 20)
+_EVENT_HEAD, _COMMAND_HEAD, _COMMAND_TAIL = 24, 32, 40
 
 
 class Ring:
@@ -62,20 +69,28 @@ class Ring:
         self._rows: NDArray[np.float64] = np.ndarray(shape, np.float64, shared.bytes, _HEADER_BYTES)
         self._frames_at = _HEADER_BYTES + self._rows.nbytes
         self._frames = np.ndarray((self._frame_count,), FRAME_DTYPE, shared.bytes, self._frames_at)
+        events_at = self._frames_at + self._frames.nbytes
+        events = np.ndarray((_EVENTS,), COMMAND_DTYPE, shared.bytes, events_at)
+        commands = np.ndarray((_COMMANDS,), COMMAND_DTYPE, shared.bytes, events_at + events.nbytes)
+        #: What became of commands; and all rows, for followers.
+        self.events, self.row_lane = Lane(words, _EVENT_HEAD, events), Lane(words, _ROW_HEAD, self._rows)
+        #: Commands into the loop.
+        self.mailbox = Mailbox(words, _COMMAND_TAIL, Lane(words, _COMMAND_HEAD, commands))
         self._scratch: NDArray[np.float64] = np.zeros(words[_WIDTH])
         self._full = False
         self._row_head, self._frame_head, self._lost = words[_ROW_HEAD], words[_FRAME_HEAD], words[_LOST]
 
     @classmethod
-    def create(cls, row_width: int, rows: int = 16384, frames: int = 262144) -> "Ring":
-        """Make a ring for rows of `row_width` floats; its maker is the writer.
+    def create(cls, row_width: int, rows: int = 65536, frames: int = 131072) -> "Ring":
+        """Make a ring for rows of `row_width` floats, a minute of them; its maker is the writer.
 
         Raises
         ------
         Failure
             When the shared memory does not hold it.
         """
-        shared = SharedMemory.create(_HEADER_BYTES + rows * row_width * 8 + frames * _FRAME_BYTES)
+        beside = (_EVENTS + _COMMANDS) * COMMAND_DTYPE.itemsize
+        shared = SharedMemory.create(_HEADER_BYTES + rows * row_width * 8 + frames * _FRAME_BYTES + beside)
         np.ndarray((len(shared.bytes),), np.uint8, shared.bytes)[:] = 0  # touch every page now
         words = memoryview(shared.bytes)[:_HEADER_BYTES].cast("q")
         for place, value in ((_WIDTH, row_width), (_ROWS, rows), (_FRAMES, frames), (_MAGIC_AT, _MAGIC)):
@@ -180,6 +195,26 @@ class Ring:
         taken: NDArray[np.void] = self._frames[np.arange(tail, head) % self._frame_count]
         self._words[_FRAME_TAIL] = head
         return taken
+
+    def skip_history(self) -> None:
+        """Begin to read, as the recorder, with what is written from now on."""
+        words = self._words
+        words[_ROW_TAIL], words[_FRAME_TAIL] = words[_ROW_HEAD], words[_FRAME_HEAD]
+        words[_READER] = 1
+
+    def next_unread(self) -> NDArray[np.float64]:
+        """Copy the row that :meth:`read_rows` will give first; it must be there."""
+        row: NDArray[np.float64] = self._rows[self._words[_ROW_TAIL] % self._row_count].copy()
+        return row
+
+    @property
+    def unread(self) -> int:
+        """How many rows the recorder has not taken."""
+        return self._words[_ROW_HEAD] - self._words[_ROW_TAIL]
+
+    def leave(self) -> None:
+        """Record no longer: nothing waits for this reader any more."""
+        self._words[_READER] = 0
 
     def fail(self) -> None:
         """Say, as the reader, that what it takes is no longer kept; `recording` tells it from now on."""

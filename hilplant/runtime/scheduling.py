@@ -4,6 +4,7 @@ import contextlib
 import ctypes
 import gc
 import os
+import signal
 import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -74,6 +75,17 @@ def real_time(priority: int, cpu: int | None) -> Iterator[list[Privilege]]:
         gc.unfreeze()
         if before is not None:
             _give_back(before)
+
+
+def stand_back(loop_cpu: int | None) -> None:
+    """Leave, as a process beside the loop, the signals of the terminal, the priority and the CPU to the loop."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
+    with contextlib.suppress(OSError, AttributeError):  # only Linux has them all
+        os.nice(5)
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        if others := os.sched_getaffinity(0) - {loop_cpu}:
+            os.sched_setaffinity(0, others)
 
 
 class _Scheduling(NamedTuple):

@@ -10,7 +10,7 @@ from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.node import LinkSettings, Node
 from hilplant.bus.transport import Transport, open_transport
 from hilplant.runtime.clock import Clock, WallClock
-from hilplant.runtime.loop import Control, Late, Loop, PlantRows
+from hilplant.runtime.loop import Late, Loop, PlantRows
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.scheduling import Privilege, real_time
 from hilplant.runtime.watchdog import Watchdog
@@ -151,11 +151,12 @@ def serve(  # noqa: PLR0913, PLR0917
     ring: Ring | None = None,
     stop: StopRequest | None = None,
     on_start: Callable[[list[Privilege]], None] | None = None,
-    control: Control | None = None,
+    prepare: Callable[[Loop], None] | None = None,
 ) -> Summary:
     """Run the bench on its interface on the wall clock; returns when the time is up, a signal came or `stop` asks.
 
-    `control` is a controller inside the loop, beside those on the bus.
+    With a `ring` the loop takes the commands of its mailbox. `prepare` gets the loop before its first tick, for a
+    controller inside it.
 
     Raises
     ------
@@ -168,7 +169,10 @@ def serve(  # noqa: PLR0913, PLR0917
     transport = open_transport(bench.interface)
     try:
         loop = build_loop(bench, transport, WallClock(), ring)
-        loop.control = control
+        if ring is not None:
+            loop.listen(ring.mailbox, ring.events.append)
+        if prepare is not None:
+            prepare(loop)
         loop.warm_up()
         watchdog = Watchdog()
         with ended_by_signals(stop), real_time(bench.loop.priority, bench.loop.cpu) as privileges:

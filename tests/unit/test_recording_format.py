@@ -7,7 +7,9 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from hilplant.bench import load_bench
 from hilplant.recording.format import SIGNAL_COLUMNS, batch, checksum, read_batch, schema
+from hilplant.recording.recorder import description_now
 from hilplant.recording.writer import RecordingWriter
 from hilplant.runtime.ring import FRAME_DTYPE
 
@@ -82,7 +84,7 @@ def test_the_checksum_tells_one_byte_of_one_frame() -> None:
 
 def test_a_file_is_a_recording_before_its_first_row(tmp_path: Path) -> None:
     path = tmp_path / "run.hilrec"
-    RecordingWriter(path, {"format": "2"}, WIDTH)
+    RecordingWriter(path, description_now(load_bench("default")), WIDTH)
     stream = pa.ipc.open_stream(path.read_bytes())
     assert stream.schema.names == schema().names
     assert stream.read_next_batch().num_rows == 0

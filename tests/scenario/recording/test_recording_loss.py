@@ -20,7 +20,7 @@ from hilplant.signals import RECORDING
 
 @pytest.fixture
 def run(start_run: Callable[[Ring], Any], row_width: int) -> Iterator[Any]:
-    ring = Ring.create(row_width)
+    ring = Ring.create(row_width, rows=16_384)
     yield start_run(ring)
     ring.close()
 
