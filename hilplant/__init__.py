@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hilplant.bench.assembly import Bench, load_bench
+    from hilplant.channel.client import RunChannel, connect
     from hilplant.checked_yaml.problems import BenchError
     from hilplant.simulation.run import Result, simulate
 
@@ -14,12 +15,14 @@ if TYPE_CHECKING:
 _HOMES = {
     "Bench": "hilplant.bench.assembly",
     "BenchError": "hilplant.checked_yaml.problems",
+    "RunChannel": "hilplant.channel.client",
     "Result": "hilplant.simulation.run",
+    "connect": "hilplant.channel.client",
     "load_bench": "hilplant.bench.assembly",
     "simulate": "hilplant.simulation.run",
 }
 
-__all__ = ["Bench", "BenchError", "Result", "__version__", "load_bench", "simulate"]
+__all__ = ["Bench", "BenchError", "Result", "RunChannel", "__version__", "connect", "load_bench", "simulate"]
 
 
 def __getattr__(name: str) -> Any:

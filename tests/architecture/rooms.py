@@ -25,7 +25,7 @@ LAYERS: dict[str, str] = {
     "physics": "models mechanics control",
     "borders": "checked_yaml bus verdicts faults",
     "bench": "bench",
-    "server": "runtime ecu recording",
+    "server": "runtime ecu recording channel",
     "offline": "c_source simulation measurements motor_bench identify train",
     "results": "plots reports testing perf doctor demo",
     "thesis": "thesis",
@@ -58,6 +58,7 @@ ARROWS: dict[str, str] = {
     "runtime": "units declaration signals arrays failure jit models control bus",
     "ecu": f"{_PHYSICS} checked_yaml bus bench runtime",
     "recording": "units declaration signals arrays failure extras atomic_write jit models bus runtime",
+    "channel": "units declaration signals failure extras checked_yaml models control bench runtime recording",
     "c_source": _OFFLINE,
     "simulation": _OFFLINE,
     "measurements": _OFFLINE,
@@ -71,7 +72,7 @@ ARROWS: dict[str, str] = {
     "doctor": "extras jit",
     "demo": f"{_OFFLINE} plots",
     "thesis": f"{_OFFLINE} simulation measurements motor_bench identify train plots reports perf c_source",
-    "__init__": "bench checked_yaml simulation",
+    "__init__": "bench channel checked_yaml simulation",
     "__main__": "cli",
 }
 #: Imports from all rooms: the command line alone.

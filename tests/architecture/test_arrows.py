@@ -37,7 +37,13 @@ START_TIME_FILES = {"recording/recorder.py", "cli/commands/identify.py"}
 
 
 #: Programs of their own, started by their module's name: their output is what the starter reads.
-OWN_PROGRAMS = {"vcan/private_vcan.py", "recording/drain.py", "perf/own_process.py", "measurements/mf4_process.py"}
+OWN_PROGRAMS = {
+    "vcan/private_vcan.py",
+    "recording/drain.py",
+    "channel/door.py",
+    "perf/own_process.py",
+    "measurements/mf4_process.py",
+}
 
 
 def test_only_the_command_line_prints(sources: list[Any]) -> None:

@@ -2,14 +2,16 @@
 
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 from hilplant.bench import Bench, load_bench
 from hilplant.bus.mapping import NO_CHOICE
+from hilplant.channel.beside_loop import announced
 from hilplant.cli.voice import Voice
 from hilplant.ecu.loop_controller import Inside, seated
 from hilplant.failure import Failure
 from hilplant.recording.beside_loop import RecordTo, recording
-from hilplant.runtime.loop import Control
+from hilplant.runtime.loop import Loop
 from hilplant.runtime.scheduling import Privilege
 from hilplant.runtime.server import StopRequest, Summary, ended_by_signals, serve
 from hilplant.units import MILLISECOND_NS
@@ -17,33 +19,56 @@ from hilplant.units import MILLISECOND_NS
 #: Counts that the line before the faults has told already.
 _NO_FAULTS = ("tick", "overruns", "worst_latency_us")
 
+if TYPE_CHECKING:
+    from hilplant.control.own import OwnLoopSeat
+    from hilplant.control.seat import LoopSeat
 
-def run_daemon(
-    name: str, seconds: float | None, record: RecordTo | None, channel: str | None, inside: Inside | None = None
+
+def run_daemon(  # noqa: PLR0913, PLR0917
+    name: str,
+    seconds: float | None,
+    record: RecordTo | None,
+    channel: str | None,
+    inside: Inside | None = None,
+    door: bool = True,
 ) -> Summary:
     """Serve a bench and say on the terminal how it started and how it ended."""
     bench = load_bench(name)
     if channel is not None:
         bench = replace(bench, interface={**bench.interface, "channel": channel})
-    control: Control | None = None
+    seat: LoopSeat | OwnLoopSeat | None = None
     if inside is not None:
         bench, seat = seated(bench, inside)
-        control = seat.drive
     summary: Summary | None = None
     stop, voice = StopRequest(), Voice()
     try:
-        with ended_by_signals(stop), recording(bench, record) as ring:  # signals end the run, not the recorder's work
+        # signals end the run, not the recorder's work
+        with ended_by_signals(stop), recording(bench, record) as ring, announced(bench, ring, door):
             on_start = partial(_say_start, bench, voice)
-            summary = serve(bench, seconds, ring, stop, on_start, control)
+            summary = serve(bench, seconds, ring, stop, on_start, partial(_prepare, seat))
     except Failure as failure:
         if summary is None:
             raise
         summary.recording_complete = False  # the run itself is told all the same
         voice.say(str(failure), err=True)
     _say_end(summary, record, voice)
-    if summary.controller_stopped:
+    if seat is not None and summary.controller_stopped:
         voice.say(f"{seat.stopped}; relays opened", err=True)
     return summary
+
+
+def _want(seat: "LoopSeat | OwnLoopSeat", speed_rad_s: float) -> None:
+    """Give a controller another wanted speed, for good."""
+    seat.reference = lambda _: speed_rad_s
+
+
+def _prepare(seat: "LoopSeat | OwnLoopSeat | None", loop: Loop) -> None:
+    """Give the loop what is inside it."""
+    if seat is None:
+        return
+    loop.control = seat.drive
+    if loop.intake is not None:
+        loop.intake.reference = partial(_want, seat)
 
 
 def _say_start(bench: Bench, voice: Voice, privileges: list[Privilege]) -> None:

@@ -38,6 +38,9 @@ def run(  # noqa: PLR0913, PLR0917
         str | None, typer.Option(help="its wanted crank speed: RAD_S, or TIME:RAD_S,...  [default: 3.14]")
     ] = None,
     budget_us: Budget = None,
+    no_channel: Annotated[
+        bool, typer.Option("--no-channel", help="open no local socket through which other programs take part")
+    ] = False,
     json_file: JsonFile = None,
 ) -> None:
     """Serve a bench on its CAN interface.
@@ -58,7 +61,7 @@ def run(  # noqa: PLR0913, PLR0917
     to = None if record is None else RecordTo(record, rotation)
     claim(json_file)
     inside = None if controller is None else Inside(controller, reference or "3.14", budget_us)
-    summary = run_daemon(bench, seconds, to, channel, inside)
+    summary = run_daemon(bench, seconds, to, channel, inside, not no_channel)
     missing = " | ".join(f"{given.name}: {given.mend}" for given in summary.privileges if not given.granted)
     write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))
     raise typer.Exit(0 if summary.is_sound else 1)
