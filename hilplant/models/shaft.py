@@ -16,7 +16,7 @@ from hilplant.models.gear import held_torque, through_gear
 from hilplant.models.load import by_speed, resist_as, without_inertia
 from hilplant.models.lookup import find, within_turn
 from hilplant.models.motor import Hold, advance, direction_of, half_period, slide, stand, stick
-from hilplant.models.records import Parameters
+from hilplant.models.records import Motor, Parameters
 from hilplant.models.resistance import Crank, Resistance
 from hilplant.models.torque_network import Tangent
 from hilplant.signals import Inputs
@@ -59,15 +59,36 @@ def drive_at(motion: ArmatureMotion, direction: float, load: Resistance, train: 
 
 @compiled
 def load_torque(motion: ArmatureMotion, load: Resistance, train: Train) -> float:
-    """Return the torque at the crank [N m], inertia and brake included, positive when it opposes motion; 0 at rest."""
-    if motion.speed == 0.0:
-        return 0.0
+    """Return the torque at the crank [N m], inertia and brake included, positive when it opposes motion.
+
+    At rest it is what the motor presses with through the gear onto the crank, which what holds the crank opposes: the
+    motor's torque less its own dry friction, which holds first.
+    """
     direction, ratio = math.copysign(1.0, motion.speed), train.parameters.motor.gear_ratio
+    if motion.speed == 0.0:
+        direction, pressing = at_rest(motion, load, train)
+        if direction == 0.0:
+            return pressing
     torque = direction * load.bias + load.dry + load.slope * abs(motion.speed) / ratio
     if load.inertia != 0.0:
         drive = drive_at(motion, direction, load, train)
         torque += load.inertia * direction * acceleration(motion, drive, direction * drive.dry_torque) / ratio
     return torque
+
+
+@compiled
+def at_rest(motion: ArmatureMotion, load: Resistance, train: Train) -> tuple[float, float]:
+    """Return the direction in which a standing shaft breaks away, or 0 and the torque [N m] that it presses with."""
+    motor, drive = train.parameters.motor, drive_at(motion, 1.0, load, train)
+    pressing = abs(drive.constant * motion.current + drive.push) - motor.coulomb_torque_n_m
+    direction = direction_of(motion, drive, hold_of(load, motor))
+    return direction, max(0.0, pressing) * motor.gear_ratio * motor.gear_efficiency
+
+
+@compiled
+def hold_of(load: Resistance, motor: Motor) -> Hold:
+    """Return the torques from which a standing shaft breaks away."""
+    return Hold(held_torque(load, 1.0, motor), held_torque(load, -1.0, motor))
 
 
 @compiled
@@ -118,8 +139,7 @@ def let_go(
     motion: ArmatureMotion, drive: ArmatureDrive, load: Resistance, left: float, train: Train
 ) -> tuple[ArmatureMotion, float, float]:
     """Stand still until the motor breaks away or the time is over; return motion, time taken, and direction or 0."""
-    motor = train.parameters.motor
-    hold = Hold(held_torque(load, 1.0, motor), held_torque(load, -1.0, motor))
+    hold = hold_of(load, train.parameters.motor)
     direction = direction_of(motion, drive, hold)
     if direction != 0.0:
         return motion, 0.0, direction

@@ -56,8 +56,10 @@ def test_a_whole_wiper_keeps_its_angle_for_an_hour_though_gravity_pulls(
     simulate_rows(state, inputs[:2000], parameters, tables, outputs)  # comes to rest
     rest = state[2]
     assert abs(wiper.channels(rest)[channel.GRAVITY, 0]) > 0.05
+    torque = relay_on * MOTOR.slow.constant_v_s * 13.5 / MOTOR.slow.resistance_ohm
+    pressing = MOTOR.gear_ratio * max(0.0, torque - MOTOR.coulomb_torque_n_m)
     for _ in range(HOUR_BLOCKS):
         simulate_rows(state, inputs, parameters, tables, outputs)
         assert (outputs[:, OUTPUT_INDEX["crank_angle_rad"]] == rest).all()
         assert (outputs[:, OUTPUT_INDEX["motor_speed_rad_s"]] == 0.0).all()
-        assert (outputs[:, OUTPUT_INDEX["load_torque_n_m"]] == 0.0).all()
+        assert outputs[:, OUTPUT_INDEX["load_torque_n_m"]] == pytest.approx(pressing)

@@ -104,13 +104,14 @@ def test_current_and_speed_carry_over_when_the_brush_changes() -> None:
     assert changed.current_a[301] > steady.current_a[301]
 
 
-def test_a_large_brake_blocks_the_crank_and_counts_as_load_only_while_it_moves() -> None:
+def test_a_large_brake_blocks_the_crank_and_a_stalled_motor_reports_the_torque_it_presses_with() -> None:
     inputs = slow(300)
     inputs[200:, 5] = 100.0
     out = run(inputs)
     assert out.load_torque_n_m[200] == pytest.approx(100.0 + out.load_torque_n_m[199], abs=0.05)
     assert (out.motor_speed_rad_s[210:] == 0.0).all()
-    assert (out.load_torque_n_m[210:] == 0.0).all()
+    pressing = 63.0 * (MOTOR.slow.constant_v_s * out.current_a[210:] - MOTOR.coulomb_torque_n_m)
+    assert out.load_torque_n_m[210:] == pytest.approx(pressing) and 27.0 < pressing[-1] < 32.0
     assert np.ptp(out.crank_angle_rad[210:]) == 0.0
     assert out.current_a[-1] == pytest.approx(13.5 / 1.237)
 
