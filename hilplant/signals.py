@@ -63,6 +63,9 @@ class Inputs(NamedTuple):
     ] = 1.0
     left_force: Annotated[float, real("", 0.0, 100.0, "factor on the force of the left arm on its blade")] = 1.0
     right_force: Annotated[float, real("", 0.0, 100.0, "factor on the force of the right arm on its blade")] = 1.0
+    ambient_temperature_c: Annotated[float, real("degC", -60.0, 150.0, "temperature of the air around the motor")] = (
+        20.0
+    )
 
 
 class Outputs(NamedTuple):
@@ -111,6 +114,10 @@ class Outputs(NamedTuple):
     motor_mode: Annotated[float, choice(IN_CHARGE, "which model moves the motor, and why")]
     supply_current_a: Annotated[float, real("A", -2000.0, 2000.0, "current that leaves the supply")]
     measured_current_a: Annotated[float, real("A", -2000.0, 2000.0, "armature current as its sensor shows it")]
+    winding_temperature_c: Annotated[
+        float, real("degC", -100.0, 2000.0, "temperature of the winding; as at the start where heat is not modelled")
+    ]
+    thermal_switch: Annotated[float, flag("1 while the motor's thermal switch is open")]
 
 
 class Status(NamedTuple):

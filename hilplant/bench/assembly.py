@@ -30,6 +30,7 @@ from hilplant.models.park_phase import phase_at_rest
 from hilplant.models.park_switch import cam_closed
 from hilplant.models.records import Parameters, State
 from hilplant.models.row import pack
+from hilplant.models.slow_records import HeatState
 from hilplant.signals import INPUTS
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
@@ -113,11 +114,14 @@ def check_bench(source: BenchSource = "default") -> list[Problem]:
 
 
 def initial_state(parameters: Parameters, initial: Mapping[str, Any]) -> NDArray[np.float64]:
-    """Return the row of the state in which a run begins; the park switch is at rest there."""
+    """Return the row of the state in which a run begins; park switch and thermal switch are at rest there."""
     crank_angle_rad = initial["crank_angle_rad"]
     contact = cam_closed(crank_angle_rad, 0.0, parameters.park_switch)
     phase = phase_at_rest(crank_angle_rad, parameters.park_switch)
-    return pack(State(park_contact=contact, park_phase=phase)._replace(**initial))
+    heat = parameters.heat
+    opened = heat.has_switch > 0.5 and heat.start_c >= heat.trip_c
+    warm = HeatState(heat.start_c, heat.start_c, float(opened))
+    return pack(State(park_contact=contact, park_phase=phase, heat=warm)._replace(**initial))
 
 
 def _attempt(source: BenchSource) -> tuple[Bench | None, tuple[Problem, ...]]:

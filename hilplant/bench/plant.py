@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.bench.electrical_sections import wiring
 from hilplant.bench.load_files import PolynomialFile, TorqueFile
 from hilplant.bench.motor_model import build_motor_model, row_of_networks
 from hilplant.bench.parts import MotorFile
@@ -26,7 +27,8 @@ from hilplant.failure import Failure
 from hilplant.mechanics.coefficients import Aerodynamics, check_aerodynamics
 from hilplant.models.circuit import CIRCUITS
 from hilplant.models.load import LOADS
-from hilplant.models.records import Blade, Friction, Load, Parameters, ParkSwitch
+from hilplant.models.records import Blade, Friction, Load, Parameters, ParkSwitch, Relays
+from hilplant.models.slow_records import Heat
 from hilplant.units import MILLISECOND_NS, RAD_PER_DEG, SECOND_NS
 
 Blades = tuple[BladeEntry, BladeEntry]
@@ -44,6 +46,7 @@ class Plant:
     blades: Blades | None
     mechanics: Mechanics
     park_switch: ParkSwitchSection
+    section: PlantSection
     load_file: TorqueFile | PolynomialFile | None = None
 
 
@@ -68,10 +71,15 @@ def build_plant(spot: Spot, plant: PlantSection, step_ns: int) -> Plant | None:
         left_arm=mechanics.wiper.left.arm,
         right_arm=mechanics.wiper.right.arm,
         motor_model=mover.place,
+        wiring=wiring(plant.supply, plant.wires),
+        relays=plant.relays.record(step_ns) if plant.relays is not None else Relays(),
+        heat=plant.heat.record() if plant.heat is not None else Heat(),
         networks=row_of_networks(trained.numbers, mover.numbers),
     )
     check_bounds(spot.inner("load"), trained, parameters, mechanics.table)
-    return Plant(parameters, mechanics.table, motor, load, plant.screen, blades, mechanics, park_switch, trained.file)
+    return Plant(
+        parameters, mechanics.table, motor, load, plant.screen, blades, mechanics, park_switch, plant, trained.file
+    )
 
 
 def _blades(spot: Spot, section: BladesSection | None) -> Blades | None:

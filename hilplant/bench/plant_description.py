@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union, cast
 from pydantic import Field, WithJsonSchema, create_model, field_validator, model_validator
 
 from hilplant.bench.durations import Milliseconds
+from hilplant.bench.electrical_sections import RelaysSection, SupplySection, WiresSection
+from hilplant.bench.heat_section import HeatSection
 from hilplant.bench.load_files import PolynomialFile, TorqueFile
 from hilplant.bench.motor_network_file import MotorNetworkFile
 from hilplant.bench.parts import LinkageFile, MotorFile, Referred, WithAssumptions
@@ -193,3 +195,7 @@ class PlantSection(Container):
     blades: BladesSection | None = Field(default=None, description="both blades; the reduced load needs them")
     load: Annotated[EachLoad, Field(discriminator="model"), MayBeHole] = Field(description="what the crank has to move")
     park_switch: ParkSwitchSection = Field(description="the park contact and its circuit")
+    supply: SupplySection | None = Field(default=None, description="resistance of the supply; ideal when left out")
+    wires: WiresSection | None = Field(default=None, description="wires to the motor; ideal when left out")
+    relays: RelaysSection | None = Field(default=None, description="times of the relays; ideal when left out")
+    heat: HeatSection | None = Field(default=None, description="how the motor gets warm; it stays cold when left out")

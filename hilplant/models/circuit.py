@@ -10,7 +10,7 @@ from hilplant.jit import compiled
 from hilplant.models.park_phase import next_phase, phase_at_rest
 from hilplant.models.park_switch import Contact
 from hilplant.models.records import Brush, Motor, Parameters, State, Wiring
-from hilplant.models.terminals import NO_SECOND, Second, Shaft, bridged, meshed, potentials, reduced, wired
+from hilplant.models.terminals import NO_SECOND, Second, Shaft, bridged, cut_out, meshed, potentials, reduced, wired
 from hilplant.models.wiring import CIRCUITS, DEPRESSED, MECHANICAL, Leads, depressed, digital, mechanical
 from hilplant.signals import Inputs
 
@@ -44,7 +44,8 @@ def connect(inputs: Inputs, parameters: Parameters, contact: Contact, park_phase
     """Return what the circuit of the park switch connects at this instant.
 
     `park_phase` is what :func:`next_phase` returned for this instant; only the depressed circuit reads it. While the
-    guard is set the armature is cut out: no park contact may drive it then.
+    guard is set the armature is cut out: no park contact may drive it then. The thermal switch does the same: it lies
+    inside the motor, in series with the common brush.
     """
     circuit, polarity = parameters.park_switch.circuit, 1.0
     if circuit == MECHANICAL:
@@ -53,31 +54,11 @@ def connect(inputs: Inputs, parameters: Parameters, contact: Contact, park_phase
         leads, polarity = depressed(inputs, contact, park_phase), -1.0
     else:
         leads = digital(inputs)
-    now = Shaft(state.current_a, state.motor_speed_rad_s)
+    cut = 1.0 if state.guard > 0.5 or state.heat.opened > 0.5 else 0.0
+    now = Shaft(state.current_a, state.motor_speed_rad_s, cut)
     if parameters.wiring.altered > 0.5:
-        connection = through_wires(leads, parameters, inputs.supply_v, polarity, now)
-    else:
-        connection = seen_by_armature(leads, parameters.motor, inputs.supply_v, polarity, now)
-    return interrupted(connection) if state.guard > 0.5 else connection
-
-
-@compiled
-def interrupted(connection: Connection) -> Connection:
-    """Return the connection with its armature cut out: no voltage drives it, no current flows."""
-    return Connection(
-        brush=connection.brush,
-        source_v=0.0,
-        terminal_v=0.0,
-        closed=0.0,
-        fast=connection.fast,
-        second=NO_SECOND,
-        terminal_53_v=connection.terminal_53_v,
-        terminal_53b_v=connection.terminal_53b_v,
-        terminal_53e_v=connection.terminal_53e_v,
-        terminal_31_v=connection.terminal_31_v,
-        supply_v=connection.supply_v,
-        supply_current_a=0.0,
-    )
+        return through_wires(leads, parameters, inputs.supply_v, polarity, now)
+    return seen_by_armature(leads, parameters.motor, inputs.supply_v, polarity, now)
 
 
 @compiled
@@ -97,7 +78,7 @@ def seen_by_armature(leads: Leads, motor: Motor, supply_v: float, polarity: floa
     fast, brush, chosen, terminal_v = 0.0, motor.slow, leads.slow, polarity * (slow_v - common_v)
     if leads.fast.driven > 0.5:
         fast, brush, chosen, terminal_v = 1.0, motor.fast, leads.fast, polarity * (fast_v - common_v)
-    closed = chosen.driven * leads.common.driven
+    closed = chosen.driven * leads.common.driven * (1.0 - now.cut)
     if closed < 0.5:
         terminal_v = 0.0
     taken = closed * polarity * (chosen.share - leads.common.share) * now.current_a
@@ -125,6 +106,8 @@ def through_wires(leads: Leads, parameters: Parameters, supply_v: float, polarit
     chosen, other = (motor.fast, motor.slow) if is_fast else (motor.slow, motor.fast)
     ports = bridged(first, second, common, wiring.brushes_s, alone)
     mesh = meshed(ports, supply_v, polarity, wiring)
+    if now.cut > 0.5:
+        mesh = cut_out(mesh)
     seen = reduced(ports, mesh, chosen, other, now)
     current = now.current_a if mesh.closed else 0.0
     shown = potentials(ports, mesh, (current, seen.second.current_a), polarity, wiring)

@@ -22,7 +22,7 @@ from hilplant.models.narx import (
     predict,
     within,
 )
-from hilplant.models.records import MotorMemory, Sample, State
+from hilplant.models.records import MotorMemory, Parameters, Sample, State
 from hilplant.models.resistance import Resistance
 from hilplant.models.shaft import Train, drive_at, turn
 
@@ -57,7 +57,7 @@ def by_network(
     before = state.memory.last
     speed = motion.speed / train.parameters.motor.gear_ratio
     now = Sample(train.connection.terminal_v, state.memory.last.torque_n_m, motion.current, speed)
-    if train.parameters.wiring.altered > 0.5:  # trained with ideal wires
+    if beyond_training(train.parameters):
         return without_network(OUTSIDE), motion
     if brush == NO_BRUSH or speed < networks[path + 4]:
         return without_network(STANDSTILL), motion
@@ -72,6 +72,12 @@ def by_network(
     if not (within(networks, path, now, margin) and within(networks, path, reached, 0.0)):
         return without_network(OUTSIDE), motion
     return MotorMemory(now, brush, NETWORK), after
+
+
+@compiled
+def beyond_training(parameters: Parameters) -> bool:
+    """Return whether the plant has what no network knows: they are trained with ideal wires and a cold motor."""
+    return bool(parameters.wiring.altered > 0.5 or parameters.heat.altered > 0.5)
 
 
 @compiled
@@ -122,7 +128,7 @@ def remembered(before: ArmatureMotion, after: ArmatureMotion, mode: float, train
     That torque is what the integrals of (3.30) and (3.31) over the tick leave for it.
     """
     brush, ratio = brush_of(train), train.parameters.motor.gear_ratio
-    if brush == NO_BRUSH or after.speed <= 0.0 or train.parameters.wiring.altered > 0.5:
+    if brush == NO_BRUSH or after.speed <= 0.0 or beyond_training(train.parameters):
         return without_network(mode)
     torque = carried_torque(before, after, train)
     sample = Sample(train.connection.terminal_v, torque, before.current, before.speed / ratio)

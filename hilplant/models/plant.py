@@ -6,17 +6,19 @@ from hilplant.jit import compiled
 from hilplant.models.armature import ArmatureMotion
 from hilplant.models.circuit import connect, next_phase
 from hilplant.models.guard import admit, hold_if_wrong
+from hilplant.models.heat import heated, losses, warmed
 from hilplant.models.load import NETWORK, resist_as
 from hilplant.models.lookup import derivative, find, value, within_turn
 from hilplant.models.motor_choice import move
 from hilplant.models.park_switch import contact_now
-from hilplant.models.records import Parameters, State
+from hilplant.models.records import Motor, Parameters, State
 from hilplant.models.reduced import left_pressing, right_pressing
 from hilplant.models.relays import move_relays
 from hilplant.models.resistance import Crank, Resistance
-from hilplant.models.row import unpack, write
+from hilplant.models.row import changed, unpack, write
 from hilplant.models.sensors import read_current, stick_contact
 from hilplant.models.shaft import Train, load_torque
+from hilplant.models.slow_records import HeatState
 from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
 from hilplant.models.torque_network import NETWORK as BY_NETWORK
 from hilplant.models.torque_network import NO_TANGENT, PHYSICAL, load_in_charge, network_tangent
@@ -38,8 +40,9 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
         Array [knots + 1, channels, 2] over the crank angle; see :mod:`hilplant.models.tables`.
 
     """
-    # 1 what is not finite stays outside
+    # 1 what is not finite stays outside; the motor is as warm as it is
     state, inputs = admit(state, inputs)
+    parameters = as_it_is(parameters, state)
     angle, speed = state.crank_angle_rad, state.motor_speed_rad_s / parameters.motor.gear_ratio
     # 2 park switch and relays
     contact = contact_now(angle, state.park_contact, state.bounce_left, parameters.park_switch)
@@ -60,8 +63,11 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     # 5 motor and load together to the next tick
     after, memory = move(motion, angle, load, train, state)
     seen = read_current(motion.current, state.noise, parameters.sensors)
-    outputs = measured(motion, crank, load, Seen(seen.current_a, contact.shown, state.guard, memory.mode), train)
-    # 6 guard
+    shown = Seen(seen.current_a, contact.shown, state.guard, memory.mode, state.heat)
+    outputs = measured(motion, crank, load, shown, train)
+    # 6 slow states
+    heat = heat_after(motion, after, state.heat, train)
+    # 7 guard
     following = State(
         current_a=without_denormals(after.current),
         motor_speed_rad_s=without_denormals(after.speed),
@@ -75,6 +81,7 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
         relay_on=moved.on,
         relay_fast=moved.fast,
         noise=seen.noise,
+        heat=heat,
     )
     return hold_if_wrong(following, angle), outputs
 
@@ -86,6 +93,31 @@ class Seen(NamedTuple):
     park_contact: float
     guard: float
     motor_mode: float
+    heat: HeatState
+
+
+class NewMotor(NamedTuple):
+    """The motor among the parameters."""
+
+    motor: Motor
+
+
+@compiled
+def as_it_is(parameters: Parameters, state: State) -> Parameters:
+    """Return the parameters as the slow states have made them."""
+    if parameters.heat.altered < 0.5:
+        return parameters
+    return changed(parameters, NewMotor(heated(parameters.motor, parameters.heat, state.heat)))
+
+
+@compiled
+def heat_after(before: ArmatureMotion, after: ArmatureMotion, now: HeatState, train: Train) -> HeatState:
+    """Return temperatures and thermal switch a tick later; as they are where heat is not modelled."""
+    parameters = train.parameters
+    if parameters.heat.altered < 0.5:
+        return now
+    lost = losses(before, after, train.connection, parameters, train.inputs.ambient_temperature_c)
+    return warmed(now, lost, parameters.heat, parameters.step_s)
 
 
 @compiled
@@ -122,6 +154,8 @@ def measured(motion: ArmatureMotion, crank: Crank, load: Resistance, seen: Seen,
         load_mode=train.load_mode,
         motor_mode=seen.motor_mode,
         measured_current_a=seen.current_a,
+        winding_temperature_c=seen.heat.winding_c,
+        thermal_switch=seen.heat.opened,
     )
 
 

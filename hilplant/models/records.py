@@ -5,6 +5,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from hilplant.declaration import choice, declared, flag, index_of, quantity
+from hilplant.models.slow_records import Heat, HeatState
 from hilplant.signals import IN_CHARGE
 
 
@@ -172,6 +173,7 @@ class Parameters(NamedTuple):
     wiring: Wiring = Wiring()
     relays: Relays = Relays()
     sensors: Sensors = Sensors()
+    heat: Heat = Heat()
     networks: Any = NO_NETWORKS
 
 
@@ -223,6 +225,7 @@ class State(NamedTuple):
     relay_on: RelayState = RelayState()
     relay_fast: RelayState = RelayState()
     noise: Annotated[float, quantity("", "where the noise of the sensors has come to", watched=False)] = 1.0
+    heat: HeatState = HeatState()
 
 
 #: Where in its packed row each element is, by its name: `load.left_blade.wear` of the parameters, `memory.brush` of

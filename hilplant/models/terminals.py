@@ -98,10 +98,11 @@ NO_SECOND = Second(0.0, 0.0, 0.0)
 
 
 class Shaft(NamedTuple):
-    """Armature current [A] in the wiping direction, and speed [rad/s]."""
+    """Armature current [A] in the wiping direction, speed [rad/s], and 1 where the armature is cut out."""
 
     current_a: float
     speed_rad_s: float
+    cut: float = 0.0
 
 
 class Mesh(NamedTuple):
@@ -117,6 +118,12 @@ class Mesh(NamedTuple):
     inner_ohm: float
     first: float
     second: float
+
+
+@compiled
+def cut_out(mesh: Mesh) -> Mesh:
+    """Return the mesh with its armature cut out; what else loads the supply goes on doing so."""
+    return Mesh(False, False, mesh.level_v, mesh.inner_ohm, mesh.first, mesh.second)
 
 
 class Reduced(NamedTuple):
