@@ -3,10 +3,9 @@
 import math
 from collections.abc import Callable
 
-import typer
-
 from hilplant.bench import load_bench
 from hilplant.bus.transport import open_transport
+from hilplant.cli.voice import Voice
 from hilplant.control.reference import parse_reference
 from hilplant.ecu.controller_choice import ControllerChoice, Driven, seat_on_bus
 from hilplant.ecu.velocity_node import VelocityNode, VelocityReport, run_velocity_node, status_period_ns
@@ -28,7 +27,8 @@ def control_command(
     period_ns = status_period_ns(bench.send)
     side, seat = bench.ecu_side(), seat_on_bus(choice, Driven(bench.parameters.motor, period_ns / SECOND_NS))
     node = VelocityNode(side.receive, side.send, open_transport(interface), seat)
-    node.report = _printer()
+    voice = Voice()
+    node.report = _printer(voice)
     stop, clock = StopRequest(), WallClock()
     end_ns = math.inf if seconds is None else clock.now_ns() + seconds * SECOND_NS
     with ended_by_signals(stop):
@@ -37,11 +37,11 @@ def control_command(
         finally:
             node.close()
     if seat.stopped:
-        typer.echo(f"{seat.stopped}; relays opened", err=True)
+        voice.say(f"{seat.stopped}; relays opened", err=True)
     return not seat.stopped
 
 
-def _printer() -> Callable[[VelocityReport], None]:
+def _printer(voice: Voice) -> Callable[[VelocityReport], None]:
     """Return what prints a line each second, and whenever the plant falls silent or speaks again."""
     last: list[object] = [None]
 
@@ -49,7 +49,7 @@ def _printer() -> Callable[[VelocityReport], None]:
         told = (int(report.time_s), report.lost)
         if told != last[0]:
             last[0] = told
-            typer.echo(_line(report))
+            voice.say(_line(report))
 
     return tell
 

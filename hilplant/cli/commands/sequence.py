@@ -7,6 +7,7 @@ import typer
 
 from hilplant.cli.groups import command_app
 from hilplant.cli.options import DEFAULT, BenchName, Channel
+from hilplant.cli.voice import Voice
 
 app = command_app()
 
@@ -29,6 +30,6 @@ def sequence(
     from hilplant.identify.sequence_runs import play_on_bus, stages_of, write_scenario
 
     if out is None:
-        play_on_bus(bench, stages_of(kind, volts), channel, typer.echo)
+        play_on_bus(bench, stages_of(kind, volts), channel, Voice().say)
     else:
         typer.echo(write_scenario(bench, stages_of(kind, volts), out))
