@@ -65,7 +65,8 @@ def export(path: str | PathLike[str], out: str | PathLike[str], span: Span = EVE
         raise Failure(str(error)) from error
     except OSError as error:
         raise Failure(f"{out}: cannot be written: {error.strerror or error}") from error
-    return "; ".join([f"{out}: {written}", *recording.notes])
+    absent = [f"the recording has no {', '.join(recording.missing)}"] if recording.missing else []
+    return "; ".join([f"{out}: {written}", *absent, *recording.notes])
 
 
 def _write(recording: Recording, out: Path, ending: str) -> str:
@@ -76,10 +77,10 @@ def _write(recording: Recording, out: Path, ending: str) -> str:
     ticks = 0
     with open_table(out, UNITS) as add:
         for rows in _pieces(recording):
-            columns = _columns(rows, recording.run.step_ns)
+            columns = _columns(rows, recording)
             add(columns)
             ticks += len(columns["time_s"])
-    return _told(ticks)
+    return _told(ticks, recording)
 
 
 def _write_mf4(recording: Recording, out: Path) -> str:
@@ -89,17 +90,17 @@ def _write_mf4(recording: Recording, out: Path) -> str:
     with asammdf.MDF(version="4.10") as file:
         add, frames = mf4_group(file, UNITS), FrameGroups(file)
         for rows in _pieces(recording):
-            columns = _columns(rows, recording.run.step_ns)
+            columns = _columns(rows, recording)
             add({"deadline_s": columns.pop("deadline_s"), **columns})  # one clock for signals and frames
             frames.add(rows)
             ticks += len(columns["time_s"])
         file.start_time = recording.run.start_utc
         file.save(out, overwrite=True, compression=2)
-    return f"{_told(ticks)}, {frames.count} frames"
+    return f"{_told(ticks, recording)}, {frames.count} frames"
 
 
-def _told(ticks: int) -> str:
-    return f"{ticks} ticks of {len(UNITS) - 1} signals"
+def _told(ticks: int, recording: Recording) -> str:
+    return f"{ticks} ticks of {len(UNITS) - 1 - len(recording.missing)} signals"
 
 
 def _pieces(recording: Recording) -> Iterator[pa.Table]:
@@ -115,17 +116,18 @@ def _pieces(recording: Recording) -> Iterator[pa.Table]:
         yield pa.Table.from_batches(held, schema()).combine_chunks()
 
 
-def _columns(rows: pa.Table, step_ns: int) -> Columns:
+def _columns(rows: pa.Table, recording: Recording) -> Columns:
     rows = rows.filter(rows.column("deadline_ns").is_valid())
-    columns = {"time_s": rows.column("tick").to_numpy() * step_ns / SECOND_NS}
+    columns = {"time_s": rows.column("tick").to_numpy() * recording.run.step_ns / SECOND_NS}
     for prefix, signals, names in _SIGNALS:
         for signal, name in zip(signals, names, strict=True):
-            columns[prefix + signal.name] = rows.column(name).to_numpy()
+            if name not in recording.missing:
+                columns[prefix + signal.name] = rows.column(name).to_numpy()
     columns["deadline_s"] = rows.column("deadline_ns").to_numpy() / SECOND_NS
     return columns
 
 
 def signal_columns(recording: Recording) -> tuple[Columns, Mapping[str, str]]:
-    """Return all signals by tick, and their units: outputs by their name, ``in_...``, ``status_...``."""
+    """Return all signals that there are by tick, and their units: outputs by their name, ``in_...``, ``status_...``."""
     names = [name for name in schema().names if name not in ("frames", "events")]
-    return _columns(recording.table(names), recording.run.step_ns), UNITS
+    return _columns(recording.table(names), recording), UNITS

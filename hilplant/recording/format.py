@@ -22,6 +22,8 @@ from hilplant.runtime.ring import BITRATE_SWITCH, ERROR, EXTENDED, FD, REMOTE, S
 from hilplant.signals import INPUTS, OUTPUTS, STATUS
 
 FORMAT_VERSION = "3"
+#: Formats that can be read, and how each stores an output: 1 as it is, 3 as differences.
+OUTPUT_TYPES = {"1": pa.float64(), "3": pa.int64()}
 KEY_PREFIX = "hilplant."
 CHECKSUM_KEY = b"hilplant.crc32"
 STATE_KEY = b"hilplant.state"
@@ -99,15 +101,14 @@ def batch(rows: NDArray[np.float64], frames: NDArray[np.void], events: NDArray[n
     return pa.RecordBatch.from_arrays(arrays, schema=columns)
 
 
-def read_batch(stored: pa.RecordBatch) -> pa.RecordBatch:
-    """Return a batch as it is read: outputs as the numbers that they were."""
-    arrays = {name: stored.column(name) for name in stored.schema.names}
-    for name in OUTPUT_COLUMNS:
-        there = arrays[name].is_valid().to_numpy(zero_copy_only=False)
-        values = np.zeros(len(there))
-        values[there] = decode(arrays[name].drop_null().to_numpy(zero_copy_only=False))
-        arrays[name] = pa.array(values, mask=~there, from_pandas=False)
-    return pa.RecordBatch.from_arrays(list(arrays.values()), schema=schema())
+def numbers(stored: pa.Array, kind: pa.DataType) -> pa.Array:
+    """Return a column as it is read: what is stored as differences as the numbers that they were."""
+    if stored.type == kind:
+        return stored
+    there = stored.is_valid().to_numpy(zero_copy_only=False)
+    values = np.zeros(len(there))
+    values[there] = decode(stored.drop_null().to_numpy(zero_copy_only=False))
+    return pa.array(values, mask=~there, from_pandas=False)
 
 
 def state_text(state: NDArray[np.float64]) -> bytes:
@@ -165,13 +166,14 @@ def parameter_changes(rows: pa.RecordBatch) -> list[tuple[int, int, float]]:
 def checksum(values: pa.RecordBatch, state: bytes = b"") -> bytes:
     """CRC-32 over a state's text and the values of a batch, whatever their layout in memory or on disk."""
     crc = zlib.crc32(state)
-    for column in values.columns[:-2]:
-        crc = zlib.crc32(column.is_null().to_numpy(zero_copy_only=False).tobytes(), crc)
-        crc = zlib.crc32(column.fill_null(0).to_numpy(zero_copy_only=False).tobytes(), crc)
-    for lists in values.columns[-2:]:
-        crc = zlib.crc32(lists.value_lengths().to_numpy(zero_copy_only=False).tobytes(), crc)
-        for part in lists.flatten().flatten():
-            crc = zlib.crc32(_bytes(part), crc)
+    for column in values.columns:
+        if pa.types.is_list(column.type):
+            crc = zlib.crc32(column.value_lengths().to_numpy(zero_copy_only=False).tobytes(), crc)
+            for part in column.flatten().flatten():
+                crc = zlib.crc32(_bytes(part), crc)
+        else:
+            crc = zlib.crc32(column.is_null().to_numpy(zero_copy_only=False).tobytes(), crc)
+            crc = zlib.crc32(column.fill_null(0).to_numpy(zero_copy_only=False).tobytes(), crc)
     return b"%08x" % crc
 
 

@@ -5,6 +5,7 @@ import json
 import platform
 import secrets
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -15,8 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant import __version__
+from hilplant.recording.adoption import FORMAT_1, ROWS, Elements, adopted_row, elements_of
 from hilplant.recording.format import FORMAT_VERSION
 from hilplant.recording.recorded_bench import RecordedBench
+
+_AT_THE_START = {"first_tick": "0", "first_ns": "0"}
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,7 @@ class RunDescription:
     sources: dict[str, str]
     start_utc: datetime  # when the recorder was ready; the first tick follows within the loop's start-up
     build: dict[str, str]  # versions of everything that the outputs' bits depend on
+    elements: Mapping[str, Elements]  # of what was recorded, by the keys of `adoption.ROWS`
     series: str  # the same in all parts of one run, and in no other
     part: int  # counted from 1
     first_tick: int  # of this part; `state_row` is the state before it
@@ -63,10 +68,10 @@ def describe(bench: RecordedBench, start_utc: datetime) -> dict[str, str]:
         "sources": json.dumps(dict(bench.sources)),
         "start_utc": start_utc.astimezone(UTC).isoformat(),
         "build": json.dumps(current_build()),
+        "elements": json.dumps({key: elements_of(record) for key, record in ROWS.items()}),
         "series": secrets.token_hex(8),
         "part": "1",
-        "first_tick": "0",
-        "first_ns": "0",
+        **_AT_THE_START,
     }
     return texts | {"crc32": _checksum(texts)}
 
@@ -95,25 +100,35 @@ def parameters_of(metadata: dict[str, str]) -> NDArray[np.float64]:
 
 
 def parse(metadata: dict[str, str]) -> RunDescription:
-    """Read back what :func:`describe` has written.
+    """Read back what :func:`describe` has written, the rows in today's order.
 
     Raises
     ------
+    ForeignElement
+        When this version cannot take the rows.
     KeyError, ValueError
         When something is missing, unreadable or changed.
     """
     texts = {key: text for key, text in metadata.items() if key != "crc32"}
     if metadata["crc32"] != _checksum(texts):
         raise ValueError("it fails its checksum")
+    if metadata["format"] == "1":  # which knew neither names nor parts
+        elements, metadata = FORMAT_1, {"series": texts["start_utc"], "part": "1", **_AT_THE_START, **metadata}
+    else:
+        elements = json.loads(metadata["elements"])
+    parameter_row, state_row = (
+        adopted_row(_decode(metadata[key]), elements[key], ROWS[key]) for key in ("parameter_row", "state_row")
+    )
     return RunDescription(
         name=metadata["name"],
         step_ns=int(metadata["step_ns"]),
-        parameter_row=_decode(metadata["parameter_row"]),
+        parameter_row=parameter_row,
         tables=_decode(metadata["tables"]),
-        state_row=_decode(metadata["state_row"]),
+        state_row=state_row,
         sources=json.loads(metadata["sources"]),
         start_utc=datetime.fromisoformat(metadata["start_utc"]),
         build=json.loads(metadata["build"]),
+        elements=elements,
         series=metadata["series"],
         part=int(metadata["part"]),
         first_tick=int(metadata["first_tick"]),

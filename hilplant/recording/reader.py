@@ -1,7 +1,7 @@
 """Opens a recording, or its parts as one, and gives it block by block; a cut-off tail is a note, damage is an error."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
@@ -11,14 +11,23 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from hilplant.failure import Failure
+from hilplant.recording.adoption import (
+    ROWS,
+    Elements,
+    ForeignElement,
+    adopted_row,
+    adopted_rows,
+    missing_columns,
+    undescribed_columns,
+    unknown_columns,
+)
 from hilplant.recording.format import (
     CHECKSUM_KEY,
-    FORMAT_VERSION,
     KEY_PREFIX,
     LOST_KEY,
+    OUTPUT_TYPES,
     STATE_KEY,
     checksum,
-    read_batch,
     schema,
     state_of,
 )
@@ -42,6 +51,7 @@ class Recording:
     run: RunDescription  # of the first part
     parts: tuple[Path, ...]
     first_ns: tuple[int, ...]  # when the first tick of each part was due, from the loop's start
+    missing: tuple[str, ...] = ()  # columns of outputs and status that it lacks; they are null
     notes: list[str] = field(default_factory=list)  # filled while the batches are read
     span: Span = EVERYTHING
 
@@ -77,7 +87,7 @@ class Recording:
             if next_ns is not None and self.span.begins_after(next_ns):
                 continue
             with open(part, "rb") as file:
-                for block in _PartReader(part, file, self.notes).blocks():
+                for block in _PartReader(part, file, self.run.elements, self.notes).blocks():
                     rows = self.span.cut(block.rows)
                     yield block if len(rows) == len(block.rows) else Block(rows, None)
 
@@ -91,8 +101,8 @@ class Recording:
 class _PartReader:
     """Reads the blocks of one file."""
 
-    def __init__(self, path: Path, file: BinaryIO, notes: list[str]) -> None:
-        self._path, self._file, self._notes = path, file, notes
+    def __init__(self, path: Path, file: BinaryIO, elements: Mapping[str, Elements], notes: list[str]) -> None:
+        self._path, self._file, self._elements, self._notes = path, file, elements, notes
 
     def blocks(self) -> Iterator[Block]:
         """Give all whole blocks."""
@@ -122,7 +132,13 @@ class _PartReader:
             ticks = rows.column("tick")
             span = f"ticks {ticks[0]} to {ticks[-1]}"
             raise Failure(f"{self._path}: damaged in block {number}: the values of {span} fail their checksum")
-        return Block(read_batch(rows), state_of(state) if state else None)
+        try:
+            return Block(adopted_rows(rows, self._elements.get("inputs", {})), self._state(state))
+        except (ForeignElement, ValueError) as error:
+            raise Failure(f"{self._path}: block {number}: {error}") from error
+
+    def _state(self, text: bytes) -> NDArray[np.float64] | None:
+        return adopted_row(state_of(text), self._elements["state_row"], ROWS["state_row"]) if text else None
 
     def _note_end(self) -> None:
         self._file.seek(-8, os.SEEK_END)
@@ -148,40 +164,65 @@ def read_recording(path: str | os.PathLike[str]) -> Recording:
     """
     path = Path(path)
     parts = [path] if path.exists() else parts_of(path) or [path]
-    runs = [_description(part) for part in parts]
+    schemas = [_schema(part) for part in parts]
+    runs = [_description(part, found) for part, found in zip(parts, schemas, strict=True)]
     for part, run in zip(parts, runs, strict=True):
         if run.series != runs[0].series:
             raise Failure(f"{part}: is of another run than {parts[0]}; name the parts one by one")
-    return Recording(path, runs[0], tuple(parts), tuple(run.first_ns for run in runs))
+    recording = Recording(path, runs[0], tuple(parts), tuple(run.first_ns for run in runs), missing_columns(schemas[0]))
+    if unknown := unknown_columns(schemas[0], "out.", "status."):
+        recording.notes.append(f"{path}: not read, as this version does not know it: {', '.join(unknown)}")
+    return recording
 
 
-def _description(path: Path) -> RunDescription:
+def _schema(path: Path) -> pa.Schema:
     try:
         with open(path, "rb") as file:
-            found = pa.ipc.open_stream(file).schema
+            return pa.ipc.open_stream(file).schema
     except (pa.ArrowException, ValueError) as error:
         raise Failure(f"{path}: not a recording of hilplant") from error
     except OSError as error:
         raise Failure(f"{path}: cannot be read: {error.strerror or _first_line(error)}") from error
+
+
+def _description(path: Path, found: pa.Schema) -> RunDescription:
     texts = {_text(key): _text(value) for key, value in (found.metadata or {}).items()}
     metadata = {key.removeprefix(KEY_PREFIX): value for key, value in texts.items() if key.startswith(KEY_PREFIX)}
     if "format" not in metadata:
         raise Failure(f"{path}: not a recording of hilplant")
-    if metadata["format"] != FORMAT_VERSION:
-        raise Failure(f"{path}: has format {metadata['format']}, this version reads format {FORMAT_VERSION}")
+    if metadata["format"] not in OUTPUT_TYPES:
+        known = ", ".join(OUTPUT_TYPES)
+        raise Failure(f"{path}: has format {metadata['format']}, this version reads the formats {known}")
+    _check_columns(path, found, OUTPUT_TYPES[metadata["format"]])
+    try:
+        run = parse(metadata)
+        undescribed = undescribed_columns(found, run.elements)
+    except ForeignElement as error:
+        raise Failure(f"{path}: {error}") from error
+    except (KeyError, ValueError, TypeError) as error:
+        raise Failure(f"{path}: its description of the run is unreadable ({error})") from error
+    if undescribed:
+        raise Failure(f"{path}: damaged: columns and description do not agree about {', '.join(undescribed)}")
+    return run
+
+
+def _check_columns(path: Path, found: pa.Schema, output: pa.DataType) -> None:
+    """Refuse columns that are no signals and not known, lack what no recording does without, or have another type."""
+    here = schema()
     try:
         names = found.names
     except UnicodeDecodeError as error:
         raise Failure(f"{path}: a column's name is damaged") from error
-    if names != schema().names:
-        unknown = sorted(set(names) ^ set(schema().names))
-        raise Failure(f"{path}: has other columns than this version's: {', '.join(unknown) or 'another order'}")
-    if found.types != schema(stored=True).types:
-        raise Failure(f"{path}: has columns of other types than this version's")
-    try:
-        return parse(metadata)
-    except (KeyError, ValueError, TypeError) as error:
-        raise Failure(f"{path}: its description of the run is unreadable ({error})") from error
+    for name in ("tick", "deadline_ns", "frames"):
+        if name not in names:
+            raise Failure(f"{path}: it has no column {name}")
+    for column in found:
+        kinds = {"out.": output, "in.": pa.float64(), "status.": pa.float64()}
+        kind = next((kinds[prefix] for prefix in kinds if column.name.startswith(prefix)), None)
+        if kind is None and column.name not in here.names:
+            raise Failure(f"{path}: this version does not know its column {column.name}")
+        if names.count(column.name) > 1 or column.type != (kind or here.field(column.name).type):
+            raise Failure(f"{path}: its column {column.name} is not as this version writes it")
 
 
 def matrix(rows: pa.RecordBatch, names: tuple[str, ...]) -> np.ndarray[Any, np.dtype[np.float64]]:

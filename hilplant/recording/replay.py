@@ -34,6 +34,7 @@ class ReplayResult:
 
     equal: bool
     ticks: int  # compared and equal
+    outputs: int  # that were compared
     difference: Difference | None
     missing: tuple[tuple[int, int], ...]  # first and last tick of each gap in the recording
     notes: tuple[str, ...]
@@ -41,7 +42,7 @@ class ReplayResult:
     def __str__(self) -> str:
         """One line of verdict, then one for each note."""
         if self.equal:
-            verdict = f"equal: all {len(OUTPUTS)} outputs of {self.ticks} ticks, bit for bit"
+            verdict = f"equal: all {self.outputs} outputs of {self.ticks} ticks, bit for bit"
         elif self.difference is not None:
             verdict = f"different: {self.difference}; the {self.ticks} ticks before are equal"
         elif self.missing:
@@ -60,6 +61,7 @@ class _Comparison:
         self._state = recording.run.state_row.copy()
         self._parameters = recording.run.parameter_row.copy()
         self._next = recording.run.first_tick
+        self.outputs = np.array([name not in recording.missing for name in OUTPUT_COLUMNS])
         self.ticks = 0
         self.difference: Difference | None = None
         self.missing: list[tuple[int, int]] = []
@@ -105,6 +107,7 @@ class _Comparison:
 
     def _compare(self, ticks: NDArray[np.int64], recorded: NDArray[np.float64], replayed: NDArray[np.float64]) -> None:
         different = recorded.view(np.uint64) != replayed.view(np.uint64)  # so that NaN and -0 count as they are
+        different &= self.outputs
         if not different.any():
             self.ticks += len(recorded)
             return
@@ -128,9 +131,12 @@ def replay(path: str | PathLike[str]) -> ReplayResult:
         comparison.add(block)
     equal = comparison.difference is None and not comparison.missing and comparison.ticks > 0
     notes = list(recording.notes)
+    if absent := [signal.name for signal, there in zip(OUTPUTS, comparison.outputs, strict=True) if not there]:
+        notes.append(f"not compared, as the recording has them not: {', '.join(absent)}")
     if comparison.difference is not None:
         notes.append(_likely_reason(recording.run.build))
-    return ReplayResult(equal, comparison.ticks, comparison.difference, tuple(comparison.missing), tuple(notes))
+    gaps, outputs = tuple(comparison.missing), int(comparison.outputs.sum())
+    return ReplayResult(equal, comparison.ticks, outputs, comparison.difference, gaps, tuple(notes))
 
 
 def _likely_reason(build: dict[str, str]) -> str:

@@ -1,4 +1,7 @@
-"""An output, an input and a load are each added in two files of a copy of the package, and all else follows."""
+"""An output, an input and a load are each added in two files of a copy of the package, and all else follows.
+
+Recordings from before still replay there.
+"""
 
 import os
 import shutil

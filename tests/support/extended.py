@@ -1,5 +1,6 @@
 """What the package does with an output, an input and a load that were added to it; run inside the changed copy."""
 
+import lzma
 import sys
 from pathlib import Path
 
@@ -7,9 +8,11 @@ import numpy as np
 
 from hilplant.bench.assembly import load_bench
 from hilplant.models.load import LOADS
-from hilplant.signals import INPUT_INDEX
+from hilplant.recording.replay import replay
+from hilplant.signals import INPUT_INDEX, OUTPUTS
 from hilplant.simulation.run import simulate
 
+DATA = Path(__file__).parents[1] / "data"
 SCENARIO = """
 seconds: 0.4
 signals:
@@ -43,5 +46,17 @@ def main(folder: Path) -> None:
     assert turning.sum() > 300 and np.abs(columns["load_torque_n_m"] - expected)[turning].max() < 1e-9
 
 
+def replay_older(folder: Path) -> None:
+    """Replay a recording from before what was added: it lacks the output, and the input had its default."""
+    path = folder / "older.hilrec"
+    path.write_bytes(lzma.decompress((DATA / "recordings" / "format_1.hilrec.xz").read_bytes()))
+    result = replay(path)
+    assert result.equal and result.outputs == 25, str(result)
+    (note,) = result.notes
+    lacked = note.partition(": ")[2].split(", ")
+    assert len(lacked) == len(OUTPUTS) - 25 and "armature_power_w" in lacked
+
+
 if __name__ == "__main__":
     main(Path(sys.argv[1]))
+    replay_older(Path(sys.argv[1]))

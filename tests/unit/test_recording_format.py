@@ -8,7 +8,8 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from hilplant.bench import load_bench
-from hilplant.recording.format import SIGNAL_COLUMNS, batch, checksum, read_batch, schema
+from hilplant.recording.adoption import adopted_rows
+from hilplant.recording.format import SIGNAL_COLUMNS, batch, checksum, schema
 from hilplant.recording.recorder import description_now
 from hilplant.recording.writer import RecordingWriter
 from hilplant.runtime.ring import FRAME_DTYPE
@@ -47,7 +48,7 @@ def test_every_bit_of_every_number_is_kept_whatever_it_means() -> None:
     rows = rows_of(0, 1, 2, 3, 4, 5)
     odd = np.array([0x7FF8000000000000, 0x7FF0000000000001, 0xFFFFFFFFFFFFFFFF, 1 << 63, 0x7FF << 52, 1], np.uint64)
     rows[:, 5] = odd.view(np.float64)
-    values = read_batch(through_a_file(batch(rows, frames_of())))
+    values = adopted_rows(through_a_file(batch(rows, frames_of())), {})
     assert values.column(5).null_count == 0
     for index in range(2, WIDTH):
         assert values.column(index).to_numpy().tobytes() == rows[:, index].tobytes()

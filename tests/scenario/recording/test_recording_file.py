@@ -131,7 +131,7 @@ def test_a_missing_file_is_one_clear_error(tmp_path: Path) -> None:
 def test_a_damaged_name_of_a_column_is_one_clear_error(record_run: Record) -> None:
     path = record_run()
     damaged = bytearray(path.read_bytes())
-    damaged[damaged.index(b"terminal_v")] ^= 0x80
+    damaged[damaged.index(b"out.terminal_v")] ^= 0x80
     path.write_bytes(damaged)
     with pytest.raises(Failure, match="a column's name is damaged"):
         read_recording(path)

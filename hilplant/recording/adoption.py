@@ -1,0 +1,171 @@
+"""How what another version recorded becomes what this one reads: each element by its name, none by its place.
+
+What a recording lacks has the default that is declared today. What it has beyond this version must have had its
+own default, so that it changed nothing; else it is refused by name. Outputs and status change nothing in either case.
+"""
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+
+from hilplant.declaration import Signal, declared, members
+from hilplant.failure import Failure
+from hilplant.models.records import PARAMETER_INDEX, Parameters, State
+from hilplant.recording.format import INPUT_COLUMNS, numbers, schema
+from hilplant.signals import Inputs, Outputs, Status
+
+#: Names of a record's elements in the order of its packed row, each with its default; None where it has none.
+Elements = Mapping[str, float | None]
+
+ROWS: Mapping[str, type[Any]] = {
+    "parameter_row": Parameters,
+    "state_row": State,
+    "inputs": Inputs,
+    "outputs": Outputs,
+    "status": Status,
+}
+_COLUMNS = {"inputs": "in.", "outputs": "out.", "status": "status."}
+
+
+class ForeignElement(Failure):
+    """A recording has an element that this version cannot do without, or does not know; the message names it."""
+
+
+def elements_of(record: type[Any]) -> dict[str, float | None]:
+    """Return the elements of a record."""
+    kind: Any = record  # of whose type the cache must not know
+    return _elements_of(kind)
+
+
+@cache
+def _elements_of(record: Any) -> dict[str, float | None]:
+    bare = set(_without_default(record))
+    return {signal.name: None if signal.name in bare else signal.default for signal in declared(record)}
+
+
+def adopted_row(row: NDArray[np.float64], recorded: Elements, record: type[Any]) -> NDArray[np.float64]:
+    """Return a packed row in the order of today's `record`; what stands behind the elements stays there.
+
+    Raises
+    ------
+    ForeignElement
+        When the row has an element that is not known here, with another value than its default, or lacks one that has
+        no default.
+    ValueError
+        When the row is shorter than its elements.
+    """
+    names = list(recorded)
+    if len(row) < len(names):
+        raise ValueError(f"a row of {len(row)} numbers cannot hold {len(names)} elements")
+    values = dict(zip(names, row.tolist(), strict=False))
+    here = elements_of(record)
+    for name in names:
+        if name not in here and values[name] != recorded[name]:
+            raise ForeignElement(f"{name} is {values[name]:g}, and this version has no such element")
+    for name, default in here.items():
+        if name not in values and default is None:
+            raise ForeignElement(f"it has no {name}, for which there is no default")
+    known = np.array([values.get(name, default) for name, default in here.items()], np.float64)
+    return np.concatenate([known, row[len(names) :]])
+
+
+def adopted_rows(stored: pa.RecordBatch, inputs: Elements) -> pa.RecordBatch:
+    """Return a block as it is read: today's columns, null where the recording lacks an output or a status.
+
+    Raises
+    ------
+    ForeignElement
+        When an input that is not known here had another value than its default, or a parameter that is not was changed.
+    """
+    _check_changes(stored)
+    there = stored.column("deadline_ns").is_valid().to_numpy(zero_copy_only=False)
+    for column in unknown_columns(stored.schema, "in."):
+        name = column.removeprefix("in.")
+        others = [value for value in stored.column(column).drop_null().to_pylist() if value != inputs.get(name)]
+        if others:
+            raise ForeignElement(f"input {name} is {others[0]:g}, and this version has no such input")
+    here, columns, names = elements_of(Inputs), schema(), set(stored.schema.names)
+    arrays = []
+    for field in columns:
+        if field.name in names:
+            arrays.append(numbers(stored.column(field.name), field.type))
+        elif field.name in INPUT_COLUMNS:
+            default = here[field.name.removeprefix("in.")]
+            arrays.append(pa.array(np.full(len(there), default), mask=~there))
+        elif pa.types.is_list(field.type):
+            arrays.append(pa.array([[]] * len(there), field.type))
+        else:
+            arrays.append(pa.nulls(len(there), field.type))
+    return pa.RecordBatch.from_arrays(arrays, schema=columns)
+
+
+def _check_changes(stored: pa.RecordBatch) -> None:
+    """Refuse the change of a parameter that is not known here."""
+    if "events" not in stored.schema.names:
+        return
+    for event in stored.column("events").flatten().to_pylist():
+        if (event["kind"], event["outcome"]) == ("parameter", "applied") and event["name"] not in PARAMETER_INDEX:
+            raise ForeignElement(f"{event['name']} was changed, and this version has no such element")
+
+
+def missing_columns(found: pa.Schema) -> tuple[str, ...]:
+    """Return the outputs and status that a recording with these columns lacks, by the names of their columns."""
+    return tuple(name for name in schema().names if name not in found.names and name.startswith(("out.", "status.")))
+
+
+def unknown_columns(found: pa.Schema, *kinds: str) -> tuple[str, ...]:
+    """Return the columns of these kinds (`in.`, `out.`, `status.`) that this version does not know."""
+    known = schema().names
+    return tuple(name for name in found.names if name not in known and name.startswith(kinds))
+
+
+def undescribed_columns(found: pa.Schema, elements: Mapping[str, Elements]) -> list[str]:
+    """Return the signals that have a column or a name in the description, but not both: damage, not another version."""
+    kinds = tuple(_COLUMNS.values())
+    if elements is FORMAT_1:  # whose signals all still exist
+        return list(unknown_columns(found, *kinds))
+    described = {prefix + name for key, prefix in _COLUMNS.items() for name in elements[key]}
+    return sorted(described ^ {name for name in found.names if name.startswith(kinds)})
+
+
+def _without_default(record: type[Any], prefix: str = "") -> Iterator[str]:
+    for name, member in members(record):
+        if isinstance(member, Signal):
+            if name not in record._field_defaults:
+                yield prefix + name
+        elif member is not None:
+            yield from _without_default(member, f"{prefix}{name}.")
+
+
+_BRUSH = ("resistance_ohm", "inductance_henry", "constant_v_s")
+_FRICTION = (
+    *(f"dry_{number}" for number in range(1, 5)),
+    *(f"wet_{number}" for number in range(1, 8)),
+    *(f"tacky_{number}" for number in range(1, 5)),
+    "velocity_limit_mm_s",
+)
+#: Recordings of format 1 have no names: these are the elements of their rows, in their order.
+FORMAT_1: Mapping[str, Elements] = {
+    "parameter_row": dict.fromkeys((
+        "step_s",
+        *(f"motor.{brush}.{name}" for brush in ("slow", "fast") for name in _BRUSH),
+        "motor.inertia_kg_m2", "motor.damping_n_m_s", "motor.coulomb_torque_n_m",
+        "motor.gear_ratio", "motor.gear_efficiency", "motor.gear_back_efficiency",
+        "park_switch.angle_rad", "park_switch.half_window_rad", "park_switch.hysteresis_rad",
+        "park_switch.bounce_ticks", "park_switch.circuit", "park_switch.reverse_angle_rad",
+        "load.model", "load.c1", "load.c2", "load.points",
+        *(f"load.friction.{name}" for name in _FRICTION),
+        *(f"load.{side}_blade.{name}" for side in ("left", "right") for name in ("force_n", "wear")),
+        *(f"{side}_arm.{name}" for side in ("left", "right") for name in ("offset_rad", "length_m")),
+        "motor_model",
+    )),
+    "state_row": dict.fromkeys((
+        "current_a", "motor_speed_rad_s", "crank_angle_rad", "park_contact", "bounce_left", "guard", "park_phase",
+        "memory.last.terminal_v", "memory.last.torque_n_m", "memory.last.current_a", "memory.last.speed_rad_s",
+        "memory.brush", "memory.mode", "load_mode",
+    )),
+}  # fmt: skip
