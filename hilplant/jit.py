@@ -39,7 +39,7 @@ def _sources_hash(*rooms: str) -> str:
 def _usable(folder: Path) -> bool:
     """Whether compiled code may be kept in a folder, and run from it: nobody else may have put any there.
 
-    The folder must belong to this user or to whoever the sources belong to, with no right to write for others; and
+    The folder must belong to this user or to the owner of the sources, with no right to write for others; and
     nobody else may replace it, as far up as the root.
     """
     try:
@@ -115,7 +115,7 @@ def written_out(function: Callable[..., Any]) -> Callable[[Callable[..., Written
             return cast(Callable[..., Any], names["body"])
 
         WRITTEN_OUT[function] = writer
-        # options that are left out would come from whoever happens to call it first
+        # options that are left out would come from the first caller
         numba.extending.overload(function, jit_options=_OPTIONS, strict=False)(implementation)
         return writer
 

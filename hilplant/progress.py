@@ -1,4 +1,4 @@
-"""How far something long has come: what a room tells, whoever shows it."""
+"""How far something long has come: what a room reports; the command line shows it."""
 
 from collections.abc import Callable
 from typing import NamedTuple

@@ -18,7 +18,7 @@ SCREENS = (("dry", 0.0), ("tacky", 0.5), ("wet", 1.0))
 SIDE_SCREENS = (("same", -1.0), *SCREENS)
 #: Which model gives the load's torque or moves the motor: physical (there is no network, or it has not been asked),
 #: network; or the physical one because the motor stands, or because the network was not trained for what is asked.
-IN_CHARGE = ("physical", "network", "standstill", "outside")
+ACTIVE_MODELS = ("physical", "network", "standstill", "outside")
 MODES = ("waiting", "running", "safe", "degraded", "stopped", "behind")
 #: Nobody records, everything is recorded, or something of the recording was lost.
 RECORDING = ("off", "complete", "lossy")
@@ -110,8 +110,8 @@ class Outputs(NamedTuple):
     terminal_31_v: Annotated[float, real("V", -110.0, 110.0, "terminal 31, common brush, against ground")]
     left_force_n: Annotated[float, real("N", 0.0, 1e6, "force of the left blade on the screen, less lift")]
     right_force_n: Annotated[float, real("N", 0.0, 1e6, "force of the right blade on the screen, less lift")]
-    load_mode: Annotated[float, choice(IN_CHARGE, "which model gives the torque of the load, and why")]
-    motor_mode: Annotated[float, choice(IN_CHARGE, "which model moves the motor, and why")]
+    load_mode: Annotated[float, choice(ACTIVE_MODELS, "which model gives the torque of the load, and why")]
+    motor_mode: Annotated[float, choice(ACTIVE_MODELS, "which model moves the motor, and why")]
     supply_current_a: Annotated[float, real("A", -2000.0, 2000.0, "current that leaves the supply")]
     measured_current_a: Annotated[float, real("A", -2000.0, 2000.0, "armature current as its sensor shows it")]
     winding_temperature_c: Annotated[
@@ -183,6 +183,6 @@ PUBLISHED = OUTPUTS + STATUS
 PUBLISHED_INDEX = index_of(PUBLISHED)
 
 #: What the stand-in ECU hears and says: the plant's lists with its own behind them.
-ECU_HEARD = PUBLISHED + STALK
-ECU_SAID = INPUTS + ECU_STATUS
-ECU_HEARD_INDEX, ECU_SAID_INDEX = index_of(ECU_HEARD), index_of(ECU_SAID)
+ECU_RX = PUBLISHED + STALK
+ECU_TX = INPUTS + ECU_STATUS
+ECU_RX_INDEX, ECU_TX_INDEX = index_of(ECU_RX), index_of(ECU_TX)

@@ -6,12 +6,12 @@ from hilplant.bench.bus import Bus, MessageBuilder
 from hilplant.bench.ecu_description import EcuSettings
 from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.checked_yaml.spot import Spot
-from hilplant.signals import ECU_HEARD, ECU_SAID, ECU_STATUS, STALK
+from hilplant.signals import ECU_RX, ECU_STATUS, ECU_TX, STALK
 
 
 @dataclass(frozen=True, slots=True)
 class EcuMessages:
-    """Messages with indices into ``signals.ECU_HEARD`` and ``signals.ECU_SAID``."""
+    """Messages with indices into ``signals.ECU_RX`` and ``signals.ECU_TX``."""
 
     stalk: tuple[ReceivedMessage, ...] = ()
     status: tuple[SentMessage, ...] = ()
@@ -21,8 +21,8 @@ def build_ecu_messages(spot: Spot, ecu: EcuSettings, bus: Bus) -> EcuMessages:
     """Build what is sound of the ECU's own messages; everything else is noted."""
     if bus.database is None:
         return EcuMessages()
-    heard = MessageBuilder(bus.database, ECU_HEARD, len(ECU_HEARD) - len(STALK))
-    said = MessageBuilder(bus.database, ECU_SAID, len(ECU_SAID) - len(ECU_STATUS))
+    heard = MessageBuilder(bus.database, ECU_RX, len(ECU_RX) - len(STALK))
+    said = MessageBuilder(bus.database, ECU_TX, len(ECU_TX) - len(ECU_STATUS))
     received = [heard.received(spot.inner("receive", name), entry) for name, entry in (ecu.receive or {}).items()]
     sent = [said.sent(spot.inner("send", name), entry) for name, entry in (ecu.send or {}).items()]
     stalk, status = [pair[1] for pair in received if pair], [pair[1] for pair in sent if pair]

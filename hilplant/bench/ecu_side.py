@@ -8,7 +8,7 @@ from hilplant.bench.mapping import MappedMessage
 from hilplant.bench.timing import CYCLES_UNTIL_LOST
 from hilplant.bus.codec import MappingError, ReceivedMessage, SentMessage, Timing, received_message, sent_message
 from hilplant.checked_yaml.spot import Spot
-from hilplant.signals import ECU_HEARD, ECU_SAID
+from hilplant.signals import ECU_RX, ECU_TX
 from hilplant.units import MILLISECOND_NS
 
 #: Any period serves where nothing but the mapping is examined.
@@ -17,7 +17,7 @@ ECU_PERIOD_MS = 5.0
 
 @dataclass(frozen=True, slots=True)
 class EcuSide:
-    """Messages that the ECU receives, into ``signals.ECU_HEARD``, and sends, out of ``signals.ECU_SAID``.
+    """Messages that the ECU receives, into ``signals.ECU_RX``, and sends, out of ``signals.ECU_TX``.
 
     `receive` come from the plant and `send` go to it; `stalk` and `status` are between the ECU and its driver.
     """
@@ -66,7 +66,7 @@ def _commands_relay(mapped: MappedMessage) -> bool:
 
 def _can_be_sent(mapped: MappedMessage) -> bool:
     try:
-        sent_message(mapped.message, mapped.mappings, ECU_SAID, Timing(0))
+        sent_message(mapped.message, mapped.mappings, ECU_TX, Timing(0))
     except MappingError:
         return False
     return True
@@ -74,7 +74,7 @@ def _can_be_sent(mapped: MappedMessage) -> bool:
 
 def _received(mapped: MappedMessage, period_ns: int) -> ReceivedMessage:
     timeout_ns = CYCLES_UNTIL_LOST * period_ns
-    return received_message(mapped.message, mapped.mappings, ECU_HEARD, timeout_ns, mapped.protection)
+    return received_message(mapped.message, mapped.mappings, ECU_RX, timeout_ns, mapped.protection)
 
 
 def _sent(mapped: MappedMessage, ecu_period_ms: float) -> SentMessage:
@@ -82,4 +82,4 @@ def _sent(mapped: MappedMessage, ecu_period_ms: float) -> SentMessage:
     watched = tuple(mapping.plant_signal for mapping in mapped.mappings)
     period_ms = mapped.message.cycle_time or ecu_period_ms
     timing = Timing(round(period_ms * MILLISECOND_NS), 0, watched)
-    return sent_message(mapped.message, mapped.mappings, ECU_SAID, timing, mapped.protection)
+    return sent_message(mapped.message, mapped.mappings, ECU_TX, timing, mapped.protection)

@@ -78,7 +78,7 @@ class PathSection(Checked):
 
 
 class BoundSection(Checked):
-    """How far one tick of the network may be from the same tick of the physical model wherever it is in charge."""
+    """How far one tick of the network may be from the same tick of the physical model wherever it is active."""
 
     current_a: NotNegative
     crank_speed_rad_s: NotNegative

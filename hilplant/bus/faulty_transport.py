@@ -54,10 +54,10 @@ class _Way:
 
     def add_own(self, now_ns: int) -> None:
         """Take the frames that faults send by themselves; only the faults behind them change them."""
-        for place, fault in enumerate(self.faults):
+        for index, fault in enumerate(self.faults):
             own = fault.effect.own(now_ns, fault.present())
             if own:
-                self._pass([(frame, 0) for frame in own], place + 1, now_ns, 0)
+                self._pass([(frame, 0) for frame in own], index + 1, now_ns, 0)
 
     def due(self, now_ns: int, limit: int) -> list[tuple[Frame, int | None]]:
         """Return the frames whose time has come, oldest first."""

@@ -8,7 +8,7 @@ from hilplant.failure import Failure
 
 
 class TransportError(Failure):
-    """An interface that cannot be opened; says what is there instead, or the command that mends it."""
+    """An interface that cannot be opened; says what is there instead, or the command that fixes it."""
 
 
 class SendResult(Enum):

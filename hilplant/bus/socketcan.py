@@ -157,7 +157,7 @@ def open_socketcan(arguments: dict[str, Any]) -> SocketCan:
     Raises
     ------
     TransportError
-        With what is there, or the command that mends it.
+        With what is there, or the command that fixes it.
 
     """
     if wrong := wrong_settings(arguments):
@@ -169,8 +169,8 @@ def open_socketcan(arguments: dict[str, Any]) -> SocketCan:
         raise TransportError(_advice(channel, error)) from error
     if arguments.get("fd") and _mtu(channel) < _FD.size:
         opened.close()
-        mend = f"ip link set {channel} down; ip link set {channel} mtu {_FD.size} up"
-        raise TransportError(f"{channel} carries no FD frames; if it is able to, as root: {mend}")
+        fix = f"ip link set {channel} down; ip link set {channel} mtu {_FD.size} up"
+        raise TransportError(f"{channel} carries no FD frames; if it is able to, as root: {fix}")
     return opened
 
 

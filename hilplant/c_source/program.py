@@ -85,7 +85,7 @@ class Program:
             summary = plain((kind.cls.__doc__ or "").split("\n")[0])
             self.structs[kind.c] = "\n".join([f"/* {summary} */", "typedef struct {", *lines, f"}} {kind.c};"])
         elif isinstance(kind, Several):
-            parts = " ".join(f"{self.use(part)} item_{place};" for place, part in enumerate(kind.parts))
+            parts = " ".join(f"{self.use(part)} item_{index};" for index, part in enumerate(kind.parts))
             self.structs[kind.c] = f"typedef struct {{ {parts} }} {kind.c};"
         return kind.c
 

@@ -56,9 +56,9 @@ def _assigned(target: ast.expr, value: ast.expr, statement: ast.stmt, body: list
         scope.source.fail(statement, f"is not a tuple of {len(target.elts)}")
     result = scope.temporary()
     yield f"const {scope.program.use(whole.type)} {result} = {whole.c};"
-    for place, element in enumerate(target.elts):
+    for index, element in enumerate(target.elts):
         if ast.unparse(element) != "_":
-            part = Expression(f"{result}.item_{place}", whole.type.parts[place])
+            part = Expression(f"{result}.item_{index}", whole.type.parts[index])
             yield _one(element, part, statement, body, scope)
 
 
@@ -72,9 +72,9 @@ def _side_by_side(
     if set(assigned_in(target)) & set().union(*indices):
         scope.source.fail(statement, "assigns an index and uses it")
     parts: list[Expression] = []
-    for place, element in enumerate(value.elts):
+    for index, element in enumerate(value.elts):
         part = expression(element, scope)
-        earlier = {ast.unparse(other).split("[")[0] for other in target.elts[:place]}
+        earlier = {ast.unparse(other).split("[")[0] for other in target.elts[:index]}
         if earlier & names_in(element):
             result = scope.temporary()
             yield f"const {scope.program.use(part.type)} {result} = {part.value};"

@@ -38,7 +38,7 @@ def column_of(name: str) -> int:
     ValueError
         When there is none.
     """
-    places = {full: place for place, (full, _) in enumerate(columns())}
+    places = {full: index for index, (full, _) in enumerate(columns())}
     for candidate in (name, f"out.{name}", f"status.{name}", f"in.{name}"):
         if candidate in places:
             return places[candidate]

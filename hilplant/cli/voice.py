@@ -1,4 +1,4 @@
-"""Lines for whoever watches a program that must not wait: what nobody reads is left out, and said later."""
+"""Lines for those who watch a program that must not wait: what nobody reads is left out, and said later."""
 
 import os
 import select

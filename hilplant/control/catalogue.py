@@ -1,4 +1,4 @@
-"""The velocity controllers by name: the source's, PID by another tuning, gains found by search, and the cascade."""
+"""The velocity controllers by name: the thesis', PID by another tuning, gains found by search, and the cascade."""
 
 from collections.abc import Callable
 from functools import partial
@@ -15,7 +15,7 @@ from hilplant.models.records import Motor
 #: Table 7-1.
 THESIS_PID = Pid(0.00177, 35.452, 0.0)
 
-#: Initial weights (integral, proportional, derivative). The source does not print them: of a grid of weights these
+#: Initial weights (integral, proportional, derivative). The thesis does not print them: of a grid of weights these
 #: bring Tables 7-5 and 7-6 nearest. The Hebb rule hardly depends on them; the fixed-K quadratic one does.
 INITIAL_WEIGHTS = {"hebb": (200.0, 200.0, 0.0), "error_hebb": (400.0, 0.0, 0.0), "quadratic": (1.0, 3.0, 0.5)}
 

@@ -1,9 +1,9 @@
 """The fuzzy system of section 7.4 of Dooner (2016), evaluated once into a table of K over the error.
 
 A Mamdani system: seven sets of the error, four of K, seven rules, minimum for implication, maximum for aggregation,
-the centroid. The source tells of its Figures 7-9 and 7-10 in words only; what it tells is kept:
+the centroid. The thesis tells of its Figures 7-9 and 7-10 in words only; what it tells is kept:
 the error is held within 3 rad/s, at -2 rad/s it is NB to 0.125 and NM to 0.3, the sets lie tightly around zero, VS is
-Z-shaped and mostly apart from the others. The rest is assumed. Where B lies follows from the source's own
+Z-shaped and mostly apart from the others. The rest is assumed. Where B lies follows from the thesis' own
 tables: with the fuzzy system the errors in state 1 are 0.72 (Hebb) and 0.73 (Error-Hebb) of what a fixed K equal to
 the gain gives, so K is near 0.72 when the error is small.
 """

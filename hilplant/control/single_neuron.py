@@ -85,7 +85,7 @@ def kept_finite(w1: float, w2: float, w3: float) -> tuple[float, float, float]:
 def fuzzy_gain(error_rad_s: float, gain_table: Any) -> float:
     """Return K in [0, 1] for an error, from a table [n, 2] of error [rad/s] at even steps and K.
 
-    Straight lines between the knots; beyond the table the value at its end, as the source treats errors beyond 3 rad/s.
+    Straight lines between the knots; beyond the table the value at its end, as the thesis treats errors beyond 3 rad/s.
     """
     last = gain_table.shape[0] - 1
     lowest, highest = gain_table[0, 0], gain_table[last, 0]

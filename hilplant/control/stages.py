@@ -10,7 +10,7 @@ def choose_stage(stage: Stage, voltage_v: float, reference_rad_s: float, control
     """Return the brush to use from now on, and the factor by which the voltage changes with it (1 if it stays).
 
     The fast brush is taken after the voltage was above the upper threshold for a while, the slow one after it was
-    below the lower threshold for a whole turn of the crank at the reference. The source names the upper threshold
+    below the lower threshold for a whole turn of the crank at the reference. The thesis names the upper threshold
     alone, 18 V. The rest is ours: the while keeps a start at full voltage from changing the brush. The load goes up and
     down twice a turn, so anything shorter than a turn on the way back would change the brush with each wipe. With the
     factor, the ratio of the brushes' constants, the motor feels no jump of its no-load speed.

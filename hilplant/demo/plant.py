@@ -74,7 +74,7 @@ def _serve(plan: DemoSequence, path: Path, say: Callable[[Message], None]) -> Su
         name = ring.name
 
         def on_start(_: object) -> None:
-            # The thread inherits the loop's priority; at a lower one, whoever interrupts it while it holds the
+            # The thread inherits the loop's priority; at a lower one, what interrupts it while it holds the
             # interpreter would hold up the loop.
             ecu.start()
             say(Started(name))

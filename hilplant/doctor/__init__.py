@@ -1,4 +1,4 @@
-"""What of this machine helps or hinders real time and CAN, with the command that mends it."""
+"""What of this machine helps or hinders real time and CAN, with the command that fixes it."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path

@@ -37,8 +37,8 @@ def interfaces(_root: Path) -> Iterator[MachineFinding]:
     for link in links:
         yield from _interface(link)
     if not links and shutil.which("ip"):
-        mend = "sudo modprobe vcan; sudo ip link add vcan0 type vcan; sudo ip link set vcan0 up"
-        yield MachineFinding("CAN interface", "warn", "none", mend)
+        fix = "sudo modprobe vcan; sudo ip link add vcan0 type vcan; sudo ip link set vcan0 up"
+        yield MachineFinding("CAN interface", "warn", "none", fix)
 
 
 def _links() -> list[dict[str, Any]]:
@@ -61,13 +61,13 @@ def _interface(link: dict[str, Any]) -> Iterator[MachineFinding]:
         *([controller] if controller else []),
     ]
     options = "" if virtual else " type can bitrate 500000 restart-ms 100"
-    mend = "" if up else f"sudo ip link set {name} up{options}"
+    fix = "" if up else f"sudo ip link set {name} up{options}"
     healthy = up and controller in ("", "ERROR-ACTIVE")
-    yield MachineFinding(name, "ok" if healthy else "warn", ", ".join(parts), mend)
+    yield MachineFinding(name, "ok" if healthy else "warn", ", ".join(parts), fix)
     queue = link.get("txqlen", 0)
     if up and not virtual and queue < WANTED_QUEUE_LENGTH:
-        mend = f"sudo ip link set {name} txqueuelen {WANTED_QUEUE_LENGTH * 10}"
-        yield MachineFinding(f"{name} queue", "warn", f"holds only {queue} frames: bursts are dropped", mend)
+        fix = f"sudo ip link set {name} txqueuelen {WANTED_QUEUE_LENGTH * 10}"
+        yield MachineFinding(f"{name} queue", "warn", f"holds only {queue} frames: bursts are dropped", fix)
 
 
 def programs(_root: Path) -> Iterator[MachineFinding]:

@@ -9,7 +9,7 @@ State = Literal["ok", "warn", "bad"]
 
 @dataclass(frozen=True, slots=True)
 class MachineFinding:
-    """What was examined, how it stands, what that means, and the command that mends it ("" when none is needed)."""
+    """What was examined, how it stands, what that means, and the command that fixes it ("" when none is needed)."""
 
     name: str
     state: State

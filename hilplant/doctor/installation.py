@@ -20,8 +20,8 @@ def compiled_code(_root: Path) -> Iterator[MachineFinding]:
 
     folder = Path(vars(numba.config)["CACHE_DIR"])
     if folder.is_relative_to(tempfile.gettempdir()) and "HOME" in os.environ:
-        mend = "export NUMBA_CACHE_DIR=/var/cache/hilplant   # a folder that this user may write"
-        yield MachineFinding("compiled models", "warn", f"{folder} is temporary: every start compiles again", mend)
+        fix = "export NUMBA_CACHE_DIR=/var/cache/hilplant   # a folder that this user may write"
+        yield MachineFinding("compiled models", "warn", f"{folder} is temporary: every start compiles again", fix)
     elif any(folder.rglob("*.nbi")):
         yield MachineFinding("compiled models", "ok", f"kept in {folder}")
     else:

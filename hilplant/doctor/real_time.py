@@ -33,8 +33,8 @@ def scheduling(_root: Path) -> Iterator[MachineFinding]:
     if tried.returncode == 0:
         yield MachineFinding("SCHED_FIFO", "ok", "permitted: other programs cannot delay the loop")
     else:
-        mend = _limit("rtprio", "90")
-        yield MachineFinding("SCHED_FIFO", "bad", "refused: other programs delay the loop by 1 to 2 ms", mend)
+        fix = _limit("rtprio", "90")
+        yield MachineFinding("SCHED_FIFO", "bad", "refused: other programs delay the loop by 1 to 2 ms", fix)
 
 
 def limits(_root: Path) -> Iterator[MachineFinding]:
@@ -49,9 +49,9 @@ def limits(_root: Path) -> Iterator[MachineFinding]:
         soft = resource.getrlimit(number)[0]
         enough = capable or soft == resource.RLIM_INFINITY or soft >= wanted
         shown = "unlimited" if soft == resource.RLIM_INFINITY else str(soft)
-        mend = _limit(name, "90" if name == "rtprio" else "unlimited")
+        fix = _limit(name, "90" if name == "rtprio" else "unlimited")
         note = " (root is not bound by it)" if capable else ""
-        yield MachineFinding(f"limit {name}", "ok" if enough else "warn", shown + note, "" if enough else mend)
+        yield MachineFinding(f"limit {name}", "ok" if enough else "warn", shown + note, "" if enough else fix)
 
 
 def sleep_states(root: Path) -> Iterator[MachineFinding]:
@@ -60,8 +60,8 @@ def sleep_states(root: Path) -> Iterator[MachineFinding]:
     if os.access(device, os.W_OK):
         yield MachineFinding("cpu_dma_latency", "ok", "writable: processors stay awake while the loop runs")
     elif device.exists():
-        mend = "sudo chown $USER /dev/cpu_dma_latency   # until the next start; docker/60-hilplant.rules for good"
-        yield MachineFinding("cpu_dma_latency", "warn", "not writable: an idle machine wakes 100 us late", mend)
+        fix = "sudo chown $USER /dev/cpu_dma_latency   # until the next start; docker/60-hilplant.rules for good"
+        yield MachineFinding("cpu_dma_latency", "warn", "not writable: an idle machine wakes 100 us late", fix)
     else:
         yield MachineFinding("cpu_dma_latency", "warn", "this kernel has none: an idle machine may wake late")
 
@@ -87,8 +87,8 @@ def processors(root: Path) -> Iterator[MachineFinding]:
     yield MachineFinding("processors", enough, f"{usable} of {count} usable; the loop wants one to itself")  # type: ignore[arg-type]
     isolated = first_line(root / "sys/devices/system/cpu/isolated")
     last = count - 1
-    mend = "" if isolated or count < 4 else _kernel_option(f"isolcpus={last} nohz_full={last}")
-    yield MachineFinding("isolated processors", "ok", isolated or "none", mend)
+    fix = "" if isolated or count < 4 else _kernel_option(f"isolcpus={last} nohz_full={last}")
+    yield MachineFinding("isolated processors", "ok", isolated or "none", fix)
 
 
 def governor(root: Path) -> Iterator[MachineFinding]:
@@ -109,8 +109,8 @@ def clock_source(root: Path) -> Iterator[MachineFinding]:
     source = first_line(root / "sys/devices/system/clocksource/clocksource0/current_clocksource")
     good = source in ("tsc", "arch_sys_counter", "kvm-clock")
     if source:
-        mend = "" if good else _kernel_option("tsc=reliable")
-        yield MachineFinding("clock source", "ok" if good else "warn", source, mend)
+        fix = "" if good else _kernel_option("tsc=reliable")
+        yield MachineFinding("clock source", "ok" if good else "warn", source, fix)
 
 
 def hypervisor(root: Path) -> Iterator[MachineFinding]:

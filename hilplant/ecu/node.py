@@ -12,19 +12,19 @@ from hilplant.ecu.relay_controller import ControllerState, advance
 from hilplant.ecu.stalk import StalkSource
 from hilplant.ecu.vocabulary import RELAYS_OFF, EcuInputs, Fault, Master, RelayCommand, RelaySettings, Stalk
 from hilplant.runtime.clock import Clock
-from hilplant.signals import ECU_FAULTS, ECU_HEARD, ECU_HEARD_INDEX, ECU_SAID, ECU_SAID_INDEX, ECU_STATES
+from hilplant.signals import ECU_FAULTS, ECU_RX, ECU_RX_INDEX, ECU_STATES, ECU_TX, ECU_TX_INDEX
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
-_PARK, _CURRENT, _SUPPLY = (ECU_HEARD_INDEX[name] for name in ("park_contact", "current_a", "supply_v"))
+_PARK, _CURRENT, _SUPPLY = (ECU_RX_INDEX[name] for name in ("park_contact", "current_a", "supply_v"))
 _MASTER, _INTERVAL, _FLICK, _WASH = (
-    ECU_HEARD_INDEX[name] for name in ("master_input", "intermittent_switch", "flick_wipe", "wash")
+    ECU_RX_INDEX[name] for name in ("master_input", "intermittent_switch", "flick_wipe", "wash")
 )
-_RELAYS = (ECU_SAID_INDEX["relay_on"], ECU_SAID_INDEX["relay_fast"])
-_TOLD = tuple(ECU_SAID_INDEX[name] for name in ("ecu_state", "ecu_fault", "ecu_tries"))
+_RELAYS = (ECU_TX_INDEX["relay_on"], ECU_TX_INDEX["relay_fast"])
+_TOLD = tuple(ECU_TX_INDEX[name] for name in ("ecu_state", "ecu_fault", "ecu_tries"))
 
 
 class EcuReport(NamedTuple):
-    """What the ECU did at one moment, for whoever watches."""
+    """What the ECU did at one moment, for those who watch."""
 
     time_s: float
     stalk: Stalk
@@ -38,7 +38,7 @@ class EcuNode:
     """A CAN node with the relay controller in it.
 
     Of the bench's messages it takes those with the park contact, the motor current or the supply voltage, and
-    sends those that carry a relay; supply and environment stay with whoever commands them. The stalk and the
+    sends those that carry a relay; supply and environment stay with those who command them. The stalk and the
     ECU's status are messages of its own. While the park contact is unknown the relays are off. `report` is called
     at each poll; `counts` are the node's, by ``signals.STATUS``.
     """
@@ -48,10 +48,10 @@ class EcuNode:
         self.state = ControllerState()
         self.report: Callable[[EcuReport], None] | None = None
         self._settings = settings
-        self._said = [signal.default for signal in ECU_SAID]
+        self._said = [signal.default for signal in ECU_TX]
         heard = [*_that_carry((_PARK, _CURRENT, _SUPPLY), side.receive), *side.stalk]
         sent = [*_commands(side.send), *side.status]
-        self._node = Node(heard, sent, transport, LinkSettings(), [math.nan] * len(ECU_HEARD))
+        self._node = Node(heard, sent, transport, LinkSettings(), [math.nan] * len(ECU_RX))
 
     @property
     def counts(self) -> list[int]:

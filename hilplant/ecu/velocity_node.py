@@ -22,7 +22,7 @@ _ON, _FAST, _SUPPLY = (INPUT_INDEX[name] for name in ("relay_on", "relay_fast", 
 
 
 class VelocityReport(NamedTuple):
-    """What the node did at one moment, for whoever watches."""
+    """What the node did at one moment, for those who watch."""
 
     time_s: float
     reference_rad_s: float

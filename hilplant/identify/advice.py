@@ -18,7 +18,7 @@ from hilplant.identify.local_search import Solution
 from hilplant.identify.parameters import Choice, search_space
 from hilplant.identify.residuals import LeastSquares, directions
 from hilplant.identify.run_of_data import make_run
-from hilplant.identify.twin import CLEAN, TwinCondition, played, spoilt
+from hilplant.identify.twin import CLEAN, TwinCondition, corrupted, played
 from hilplant.identify.uncertainty import LEAST, NORMAL_95, Identifiability
 from hilplant.measurements.measurement import Samples
 from hilplant.models.load import LOADS
@@ -64,7 +64,7 @@ _FORCE = Experiment("the arm's force, with a spring balance to 2 %", force_known
 
 def advice(bench: Bench, solution: Solution, said: Sequence[Identifiability]) -> list[Advice]:
     """Return the experiments that would tell something more, each alone, and each together with the arm's force."""
-    untold = {verdict.name for verdict in said if not verdict.told}
+    untold = {verdict.name for verdict in said if not verdict.identifiable}
     if not untold:
         return []
     found = [(each, _rows_of(bench, solution, each)) for each in (_FORCE, *_SINGLE)]
@@ -126,7 +126,7 @@ def _imagined(bench: Bench, row: Samples, what: Experiment) -> list[Run]:
     inputs[[INPUT_INDEX["left_force"], INPUT_INDEX["right_force"]]] = what.force_factor
     other = replace(bench, parameter_row=row, input_row=inputs)
     step_s = bench.step_ns / SECOND_NS
-    return [make_run(spoilt(played(other, each), CLEAN, step_s, 0), other, each.screen) for each in what.conditions]
+    return [make_run(corrupted(played(other, each), CLEAN, step_s, 0), other, each.screen) for each in what.conditions]
 
 
 def _without_nuisance(problem: LeastSquares, x: Samples) -> Matrix:

@@ -152,12 +152,12 @@ def figures(found: Identified) -> dict[str, Any]:
         "evaluations_per_s": times.evaluations_per_s,
         "refinement_s": times.local_s,
         "intervals_s": times.intervals_s,
-        "not_told": [verdict.name for verdict in found.verdicts if not verdict.told],
+        "not_told": [verdict.name for verdict in found.verdicts if not verdict.identifiable],
     }
     for verdict, interval in zip(found.verdicts, found.intervals, strict=True):
         flat[verdict.name] = verdict.value
-        if verdict.told:
+        if verdict.identifiable:
             flat[f"{verdict.name}_low"], flat[f"{verdict.name}_high"] = interval
-    for place, comparison in enumerate(found.held_out, 1):
-        flat[f"held_out_{place}_rms_current_a"] = comparison.error.rms_current_a
+    for index, comparison in enumerate(found.held_out, 1):
+        flat[f"held_out_{index}_rms_current_a"] = comparison.error.rms_current_a
     return flat

@@ -1,4 +1,4 @@
-"""Global searches by name: the genetic algorithm of the source, and two maintained ones beside it.
+"""Global searches by name: the genetic algorithm of the thesis, and two maintained ones beside it.
 
 All take the same arguments and evaluate whole populations at a time, so that one call runs on all processors.
 """

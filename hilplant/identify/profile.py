@@ -40,14 +40,14 @@ def profile(solution: Solution, known: Spread, said: Sequence[Identifiability]) 
 
     The rise is wanted to be that of chi-square with one degree of freedom, times the widening by correlated errors.
     """
-    told = [place for place, verdict in enumerate(said) if verdict.told]
+    identifiable = [place for place, verdict in enumerate(said) if verdict.identifiable]
     intervals = [ConfidenceInterval(None, None)] * len(said)
-    if not told:
+    if not identifiable:
         return intervals
-    walk = _Walk(solution, known, told)
+    walk = _Walk(solution, known, identifiable)
     ends = np.where(walk.hangs(), walk.first_order(), walk.ends())
-    for row, place in enumerate(told):
-        intervals[place] = ConfidenceInterval(_finite(ends[row]), _finite(ends[row + len(told)]))
+    for row, place in enumerate(identifiable):
+        intervals[place] = ConfidenceInterval(_finite(ends[row]), _finite(ends[row + len(identifiable)]))
     return intervals
 
 

@@ -19,7 +19,7 @@ from hilplant.measurements.measurement import Samples
 #: First steps of the finite differences, in units of an unknown's scale, and the longest of later ones.
 FIRST_STEP, LONGEST_STEP = 1e-4, 0.05
 
-#: Speed of the crank at a park edge, in parts of the mean speed of its turn, below which time errors are not told.
+#: Speed of the crank at a park edge, in parts of the mean speed of its turn, below which time errors are unknown.
 SLOWEST_PART = 0.3
 #: Offset that may be left in a current once the one at rest has been taken off [A].
 MOST_OFFSET_A = 0.1

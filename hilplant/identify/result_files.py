@@ -60,9 +60,9 @@ def _facts(found: Identified, origin: ResultOrigin) -> dict[str, Any]:
     facts["intervals_95"] = {
         verdict.name: [interval.low, interval.high]
         for verdict, interval in zip(found.verdicts, found.intervals, strict=True)
-        if verdict.told
+        if verdict.identifiable
     }
-    facts["not_told"] = [verdict.name for verdict in found.verdicts if not verdict.told]
+    facts["not_told"] = [verdict.name for verdict in found.verdicts if not verdict.identifiable]
     return facts
 
 

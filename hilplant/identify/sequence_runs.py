@@ -85,18 +85,18 @@ def play_on_bus(
     from hilplant.bus.transport import open_transport
     from hilplant.runtime.clock import WallClock
     from hilplant.runtime.server import StopRequest, ended_by_signals
-    from hilplant.signals import ECU_HEARD, ECU_SAID
+    from hilplant.signals import ECU_RX, ECU_TX
 
     bench = load_bench(bench_name)
-    places = {signal.name: index for index, signal in enumerate(ECU_SAID)}
+    places = {signal.name: index for index, signal in enumerate(ECU_TX)}
     side = bench.ecu_side()
-    park = next(index for index, signal in enumerate(ECU_HEARD) if signal.name == "park_contact")
+    park = next(index for index, signal in enumerate(ECU_RX) if signal.name == "park_contact")
     heard = [message for message in side.receive if park in message.targets]
     names = ("relay_on", "relay_fast", "supply_v")
     _refuse_unmapped(bench_name, bool(heard), [n for n in names if not any(places[n] in m.sources for m in side.send)])
-    values = [signal.default for signal in ECU_SAID]
+    values = [signal.default for signal in ECU_TX]
     interface = bench.interface if channel is None else {**bench.interface, "channel": channel}
-    received = [math.nan] * len(ECU_HEARD)
+    received = [math.nan] * len(ECU_RX)
     wanted = {places[name] for name in names}
     sent = [message for message in side.send if wanted & set(message.sources)]
     transport = open_transport(interface)

@@ -37,8 +37,8 @@ def starting_point(measurements: Sequence[Measurement], choice: Choice, gear_rat
     motor = _motor(found)
     notes += [f"stage 1, {mode}: {each.steps} steps of the voltage, {each.turns} turns" for mode, each in found.items()]
     values = choice.values
-    for place, name in enumerate(choice.names):
-        values[place] = motor.get(name, 0.0 if name == "damping_n_m_s" and motor else values[place])
+    for index, name in enumerate(choice.names):
+        values[index] = motor.get(name, 0.0 if name == "damping_n_m_s" and motor else values[index])
     missing = [name for name in choice.names if name.endswith(("_ohm", "_henry", "_v_s")) and name not in motor]
     if missing:
         notes.append(f"the search begins about the bench's own {', '.join(missing)}")

@@ -1,4 +1,4 @@
-"""Twin data: a bench's own plant plays a test, and its signals are spoilt as a rig spoils them.
+"""Twin data: a bench's own plant plays a test, and its signals are corrupted as a rig corrupts them.
 
 The true parameters are known, so whatever identification says can be held against them.
 """
@@ -22,8 +22,8 @@ from hilplant.units import SECOND_NS, TURN_RAD
 LATEST_OFF_S = 0.02
 
 
-class Spoiling(NamedTuple):
-    """What spoils the signals.
+class Corruption(NamedTuple):
+    """What corrupts the signals.
 
     Current: white noise of this standard deviation and steps of this size. Supply: a ripple that the motor sees and the
     voltmeter too; what the voltmeter adds is noise of its own. Park: each edge comes early or late by up to
@@ -40,7 +40,7 @@ class Spoiling(NamedTuple):
     gap_s: float = 0.02
 
 
-CLEAN = Spoiling(0.0, 0.0)
+CLEAN = Corruption(0.0, 0.0)
 
 
 class TwinCondition(NamedTuple):
@@ -72,9 +72,9 @@ def stages(condition: TwinCondition, late_s: Sequence[float] = ()) -> list[Seque
     """Return the test: each voltage is switched on at rest, and off at a park edge or so much later."""
     off = OFF._replace(longest_s=0.3, fast=condition.fast)
     parts = [off]
-    for place, volts in enumerate(condition.voltages_v):
+    for index, volts in enumerate(condition.voltages_v):
         on = SequenceStage(True, condition.fast, volts, condition.turns, 20.0)
-        parts += [on, *(on._replace(edges=0, longest_s=late) for late in late_s[place : place + 1]), off]
+        parts += [on, *(on._replace(edges=0, longest_s=late) for late in late_s[index : index + 1]), off]
     return parts
 
 
@@ -93,7 +93,7 @@ def chance(bench: Bench, condition: TwinCondition, seed: int) -> Chance:
     return Chance(float(random.uniform(-reach, reach)), tuple(late.tolist()))
 
 
-def played(bench: Bench, condition: TwinCondition, ripple: Spoiling = CLEAN, drawn: Chance | None = None) -> Clean:
+def played(bench: Bench, condition: TwinCondition, ripple: Corruption = CLEAN, drawn: Chance | None = None) -> Clean:
     """Play a condition with a bench's plant; with nothing drawn, from the bench's own start."""
     state, inputs, outputs = bench.state_row.copy(), bench.input_row.copy(), np.zeros(len(OUTPUTS))
     if drawn is not None:
@@ -117,16 +117,16 @@ def played(bench: Bench, condition: TwinCondition, ripple: Spoiling = CLEAN, dra
     return Clean(np.array(rows), np.array(made))
 
 
-def recorded(bench: Bench, condition: TwinCondition, how: Spoiling, seed: int) -> Measurement:
+def recorded(bench: Bench, condition: TwinCondition, how: Corruption, seed: int) -> Measurement:
     """Play a condition as a rig would have recorded it: start, switching and noise are this seed's own."""
     clean = played(bench, condition, how, chance(bench, condition, seed))
-    return spoilt(clean, how, bench.step_ns / SECOND_NS, seed)
+    return corrupted(clean, how, bench.step_ns / SECOND_NS, seed)
 
 
-def spoilt(clean: Clean, how: Spoiling, step_s: float, seed: int) -> Measurement:
+def corrupted(clean: Clean, how: Corruption, step_s: float, seed: int) -> Measurement:
     """Return what a rig would have recorded."""
     random = np.random.default_rng(seed)
-    outputs = {name: clean.outputs[:, place] for name, place in OUTPUT_INDEX.items()}
+    outputs = {name: clean.outputs[:, index] for name, index in OUTPUT_INDEX.items()}
     count = len(clean.outputs)
     current = outputs["current_a"] + how.current_a * random.standard_normal(count)
     if how.quantum_a > 0.0:
@@ -152,8 +152,8 @@ def _jittered(contact: Samples, most: float, random: np.random.Generator) -> Sam
     edges = np.flatnonzero(np.diff(contact)) + 1
     moved = np.clip(edges + np.round(random.uniform(-most, most, len(edges))).astype(int), 1, len(contact) - 1)
     made = np.full(len(contact), contact[0])
-    for place, edge in enumerate(moved):
-        made[edge:] = contact[edges[place]]
+    for index, edge in enumerate(moved):
+        made[edge:] = contact[edges[index]]
     return made
 
 

@@ -1,7 +1,7 @@
 """How sure the parameters are: covariance, and what the data cannot tell, from the derivatives of stage 3.
 
-A parameter is told when its 95 % interval is narrower than half of its search space (5.22). One that is not is named
-as such, with those that it cannot be told from, and with an experiment that would tell it.
+A parameter is identifiable when its 95 % interval is narrower than half of its search space (5.22). One that is not
+is named, with those that it cannot be told from, and with an experiment that would tell it.
 """
 
 from typing import NamedTuple
@@ -38,7 +38,7 @@ class Identifiability(NamedTuple):
     name: str
     value: float
     standard_error: float
-    told: bool
+    identifiable: bool
     together: tuple[str, ...]
 
 
@@ -76,14 +76,14 @@ def verdicts(solution: Solution, known: Spread) -> list[Identifiability]:
     errors = np.sqrt(np.diag(known.covariance))[:count]
     low, high = search_space(problem.choice, solution.values)
     ranges = (high - low) / problem.scale[:count]
-    told = 2.0 * NORMAL_95 * errors < 0.5 * ranges
+    identifiable = 2.0 * NORMAL_95 * errors < 0.5 * ranges
     correlation = known.covariance[:count, :count] / np.outer(errors, errors)
     found = []
-    for place, name in enumerate(names):
-        near = [other for other in range(count) if other != place and abs(correlation[place, other]) > TOGETHER]
-        together = () if told[place] else tuple(names[other] for other in near if not told[other])
-        error = float(errors[place] * problem.scale[place])
-        found.append(Identifiability(name, float(solution.values[place]), error, bool(told[place]), together))
+    for index, name in enumerate(names):
+        near = [other for other in range(count) if other != index and abs(correlation[index, other]) > TOGETHER]
+        together = () if identifiable[index] else tuple(names[other] for other in near if not identifiable[other])
+        error = float(errors[index] * problem.scale[index])
+        found.append(Identifiability(name, float(solution.values[index]), error, bool(identifiable[index]), together))
     return found
 
 

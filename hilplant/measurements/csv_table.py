@@ -111,14 +111,14 @@ def _parsed(content: bytes, layout: Layout, as_text: set[str]) -> pa.Table:
 def _converted(path: Path, cells: list[str | None], kind: str, layout: Layout) -> Samples:
     """Read the cells of a column one by one; dates in seconds from the first."""
     values = np.full((len(cells), 2), np.nan)  # days, and seconds or the number itself
-    for place, cell in enumerate(cells):
+    for index, cell in enumerate(cells):
         number = number_of(cell or "", layout.decimal)
         plain = (0, number) if number is not None and (kind == "number" or np.isnan(number)) else None
         value = plain or (moment_of(cell or "") if kind == "date" else None)
         if value is None:
             what = "a number" if kind == "number" else "a time"
-            raise Failure(f"{path}:{layout.first_row + 1 + place}: '{_shown(cell or '')}' is not {what}")
-        values[place] = value
+            raise Failure(f"{path}:{layout.first_row + 1 + index}: '{_shown(cell or '')}' is not {what}")
+        values[index] = value
     days, seconds = values.T
     return seconds if kind == "number" else _since_first(days, seconds)
 

@@ -28,7 +28,7 @@ class Reader(NamedTuple):
 
 
 class Readers:
-    """Readers by identifier; a J1939 message also by its parameter group, whoever sends it."""
+    """Readers by identifier; a J1939 message also by its parameter group, from any sender."""
 
     def __init__(self) -> None:
         self.exact: dict[Key, list[Reader]] = {}
@@ -112,11 +112,11 @@ def _database_reads(message: Any) -> Reads:
 def _by_bench(name: str) -> Readers:
     """Read what the plant sends and is sent; an output comes before an input of the same name."""
     from hilplant.bench import load_bench
-    from hilplant.signals import ECU_HEARD, INPUTS
+    from hilplant.signals import ECU_RX, INPUTS
 
     bench = load_bench(name)
     readers = Readers()
-    for messages, signals in ((bench.ecu_side().receive, ECU_HEARD), (bench.receive, INPUTS)):
+    for messages, signals in ((bench.ecu_side().receive, ECU_RX), (bench.receive, INPUTS)):
         units = {signal.name: signal.unit for signal in signals}
         for message in messages:
             key = message.identifier, message.extended

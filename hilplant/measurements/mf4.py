@@ -26,10 +26,10 @@ def read_mf4_channels(path: Path) -> Channels:
     """Read the channels of numbers; one with a table of texts as its numbers, held until the next."""
     arrays = _arrays(path, "channels")
     channels = {}
-    for place, name in enumerate(arrays["names"].tolist()):
-        held = bool(arrays["held"][place])
-        unit = str(arrays["units"][place])
-        channels[name] = Channel(arrays[f"time{place}"], arrays[f"values{place}"], unit, held)
+    for index, name in enumerate(arrays["names"].tolist()):
+        held = bool(arrays["held"][index])
+        unit = str(arrays["units"][index])
+        channels[name] = Channel(arrays[f"time{index}"], arrays[f"values{index}"], unit, held)
     if not channels and arrays["frames"]:
         raise Failure(f"{path}: holds CAN frames, no signals; say what reads them: --frames FILE.dbc or --frames BENCH")
     return Channels(channels)
@@ -45,8 +45,8 @@ def read_mf4_frames(path: Path) -> LoggedFrames:
 
 def _frames(arrays: dict[str, np.ndarray]) -> Iterator[LoggedFrame]:
     columns = (arrays[name].tolist() for name in ("time", "identifier", "extended", "length", "channel"))
-    for place, (time_s, identifier, extended, length, channel) in enumerate(zip(*columns, strict=True)):
-        yield LoggedFrame(time_s, identifier, bool(extended), arrays["data"][place, :length].tobytes(), str(channel))
+    for index, (time_s, identifier, extended, length, channel) in enumerate(zip(*columns, strict=True)):
+        yield LoggedFrame(time_s, identifier, bool(extended), arrays["data"][index, :length].tobytes(), str(channel))
 
 
 def _arrays(path: Path, what: str) -> dict[str, np.ndarray]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hilplant.failure import Failure
 from hilplant.mechanics.planar import Point
 
-#: A plane is not told by points on a line, whose second extent is below this share of the first.
+#: Points on a line define no plane, whose second extent is below this share of the first.
 _LEAST_WIDTH = 0.02
 #: Of a tilted plane the thickness is below this share of how far the tilt takes its width out of XY.
 _THICKNESS = 0.3

@@ -22,6 +22,6 @@ def simulate_columns(  # noqa: PLR0913, PLR0917
     for tick in range(input_rows.shape[0]):
         state, outputs = step(state, unpack(Inputs, input_rows[tick]), parameters, tables)
         write(outputs, row)
-        for place in range(columns.shape[0]):
-            output[tick, place] = row[columns[place]]
+        for index in range(columns.shape[0]):
+            output[tick, index] = row[columns[index]]
     write(state, state_row)

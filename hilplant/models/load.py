@@ -47,11 +47,11 @@ def resist(crank: Crank, parameters: Parameters, inputs: Inputs) -> Resistance:
 
 @compiled
 def resist_as(mode: float, tangent: Tangent, crank: Crank, parameters: Parameters, inputs: Inputs) -> Resistance:
-    """Return the load from the model in charge; the physical one also where the network's speeds do not reach.
+    """Return the load from the active model; the physical one also where the network's speeds do not reach.
 
     The network gives the torque at even speed at the tick's start, and its tangent what it becomes within the tick:
     that is 1e-4 N m from the network itself and half as dear. The table gives the inertia. The torque is all bias: the
-    network is never in charge at standstill or in reverse, where it matters what of the torque is friction.
+    network is never active at standstill or in reverse, where it matters what of the torque is friction.
     """
     if mode == BY_NETWORK and reaches(parameters.networks, crank.speed_rad_s):
         on = crank.angle_rad - tangent.angle_rad

@@ -1,6 +1,6 @@
-"""Physical motor or motor network, tick by tick, and the guard that decides which of the two is in charge.
+"""Physical motor or motor network, tick by tick, and the guard that decides which of the two is active.
 
-The network is in charge while the inputs of this tick and of the one before, and what it answers, lie within its
+The network is active while the inputs of this tick and of the one before, and what it answers, lie within its
 training. Otherwise the physical model moves the motor in the same tick from the same state. The memory of both is the
 same, two ticks of voltage, torque, current and speed, so the network goes on from what the physical model has left.
 """

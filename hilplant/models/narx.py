@@ -2,7 +2,7 @@
 
 Voltage and torque of this tick and the one before, current and speed now and a tick ago go in, current and speed a
 tick later come out, (6.9) with two delays. There is a path for each brush: one layer of tanh neurons, linear outputs.
-Speeds and torques are those of the gear's output shaft, the crank, as in the source.
+Speeds and torques are those of the gear's output shaft, the crank, as in the thesis.
 
 All numbers stand in one row: how many belong to the torque network, these, then the path of the slow brush and that
 of the fast one. A path is: neurons, the limits of its training (four low ones, four high ones: voltage, torque,
@@ -24,12 +24,12 @@ NEURON = 11
 #: Brushes, as `MotorMemory.brush`; NO_BRUSH: there is nothing that the network could go on from.
 NO_BRUSH, SLOW_BRUSH, FAST_BRUSH = 0.0, 1.0, 2.0
 
-#: Who moves the motor, as ``signals.IN_CHARGE``: the physical model of a bench without network; the network; the
+#: Who moves the motor, as ``signals.ACTIVE_MODELS``: the physical model of a bench without network; the network; the
 #: physical model because the motor stands, is cut off or has just been switched; the same because the network's
 #: training does not reach there.
 PHYSICAL, NETWORK, STANDSTILL, OUTSIDE = 0.0, 1.0, 2.0, 3.0
 
-#: Once the physical model is in charge, this part of each training range is left at both ends before the network is
+#: Once the physical model is active, this part of each training range is left at both ends before the network is
 #: trusted again: the hysteresis of the guard.
 RETURN_MARGIN = 0.02
 

@@ -21,7 +21,7 @@ from hilplant.models.shaft import Train, load_torque
 from hilplant.models.slow_records import HeatState
 from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
 from hilplant.models.torque_network import NETWORK as BY_NETWORK
-from hilplant.models.torque_network import NO_TANGENT, PHYSICAL, load_in_charge, network_tangent
+from hilplant.models.torque_network import NO_TANGENT, PHYSICAL, active_load_model, network_tangent
 from hilplant.signals import Inputs, Outputs
 
 
@@ -54,7 +54,7 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     motion = ArmatureMotion(state.current_a if connection.closed > 0.5 else 0.0, state.motor_speed_rad_s, 0.0)
     load_mode, tangent = PHYSICAL, NO_TANGENT
     if parameters.load.model == NETWORK:
-        load_mode = load_in_charge(parameters.networks, speed, inputs, state.load_mode)
+        load_mode = active_load_model(parameters.networks, speed, inputs, state.load_mode)
     if load_mode == BY_NETWORK:
         tangent = network_tangent(parameters.networks, angle, speed, inputs.screen == 1.0)
     train = Train(connection, tables, inputs, parameters, load_mode, tangent)

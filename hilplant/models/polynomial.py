@@ -33,8 +33,8 @@ def fitted_shape(x: float, forward: bool, numbers: Any) -> float:
     """Return f(x) or g(x) of a linkage other than the published one; `numbers` are how many there are, then they."""
     first, last = (1, 5) if forward else (6, 13)
     shape = numbers[last]
-    for place in range(last - 1, first - 1, -1):
-        shape = shape * x + numbers[place]
+    for index in range(last - 1, first - 1, -1):
+        shape = shape * x + numbers[index]
     return float(shape)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from hilplant.declaration import choice, declared, flag, index_of, quantity
 from hilplant.models.slow_records import Heat, HeatState
-from hilplant.signals import IN_CHARGE
+from hilplant.signals import ACTIVE_MODELS
 
 
 class Brush(NamedTuple):
@@ -195,7 +195,7 @@ class MotorMemory(NamedTuple):
     brush: Annotated[
         float, quantity("", "of `last`: 1 slow, 2 fast, 0 not within the training", watched=False, guarded=0.0)
     ] = 0.0
-    mode: Annotated[float, choice(IN_CHARGE, "who moved the motor", watched=False, guarded=0.0)] = 0.0
+    mode: Annotated[float, choice(ACTIVE_MODELS, "who moved the motor", watched=False, guarded=0.0)] = 0.0
 
 
 class RelayState(NamedTuple):
@@ -221,7 +221,9 @@ class State(NamedTuple):
         float, quantity("", "of the depressed park circuit: 0 wiping, 1 turning back, 2 parked", watched=False)
     ] = 0.0
     memory: MotorMemory = MotorMemory()
-    load_mode: Annotated[float, choice(IN_CHARGE, "who gave the torque of the load", watched=False, guarded=0.0)] = 0.0
+    load_mode: Annotated[
+        float, choice(ACTIVE_MODELS, "who gave the torque of the load", watched=False, guarded=0.0)
+    ] = 0.0
     relay_on: RelayState = RelayState()
     relay_fast: RelayState = RelayState()
     noise: Annotated[float, quantity("", "where the noise of the sensors has come to", watched=False)] = 1.0

@@ -5,7 +5,7 @@ on the inside. Rows have the order of the declaration (:mod:`hilplant.declaratio
 the end of a record is what is left of the row.
 
 Compiled code may call the five functions below. For it each is written out for the type of its record, which costs what
-the same written by hand costs; whoever translates the step to another language must do the same:
+the same written by hand costs; a translation of the step to another language must do the same:
 
 ``unpack(Record, row)``
     ``Record(row[0], Inner(row[1], row[2]), row[3:])``

@@ -40,7 +40,7 @@ class Train(NamedTuple):
     tables: Any
     inputs: Inputs
     parameters: Parameters
-    load_mode: float  # who gives the torque of the load, see signals.IN_CHARGE
+    load_mode: float  # who gives the torque of the load, see signals.ACTIVE_MODELS
     tangent: Tangent  # of the torque network, while it does
 
 

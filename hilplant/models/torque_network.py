@@ -1,7 +1,7 @@
 """The torque of the whole wiper as a network, section 6.4.2 of Dooner (2016), and the guard that knows its limits.
 
 Crank angle and speed go in; the torque at the crank that a turn at this speed needs comes out, on a dry and on a wet
-screen. One layer of tanh neurons, linear outputs. The angle enters as such, as in the source, or as sines and cosines
+screen. One layer of tanh neurons, linear outputs. The angle enters as such, as in the thesis, or as sines and cosines
 of it and of its double, which makes the torque come back after a turn.
 
 All numbers stand in the row of networks: how many there are, then `HEAD` of them about the network as a whole, then
@@ -20,7 +20,7 @@ from hilplant.signals import Inputs
 NEURONS, LOWEST, HIGHEST, MARGIN, DRY, WET = 1, 2, 3, 4, 5, 6
 FIRST, NEURON = 7, 9
 
-#: Who gives the torque, as ``signals.IN_CHARGE``: the physical load of a bench without network; the network; the
+#: Who gives the torque, as ``signals.ACTIVE_MODELS``: the physical load of a bench without network; the network; the
 #: physical load because the crank is slower than the training; the same because something else is not in it.
 PHYSICAL, NETWORK, STANDSTILL, OUTSIDE = 0.0, 1.0, 2.0, 3.0
 
@@ -35,7 +35,7 @@ class Tangent(NamedTuple):
     by_speed: float
 
 
-#: Of a plant whose network is not in charge.
+#: Of a plant whose network is not active.
 NO_TANGENT = Tangent(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -69,7 +69,7 @@ def network_tangent(networks: Any, crank_angle_rad: float, crank_speed_rad_s: fl
 
 
 @compiled
-def load_in_charge(networks: Any, crank_speed_rad_s: float, inputs: Inputs, before: float) -> float:
+def active_load_model(networks: Any, crank_speed_rad_s: float, inputs: Inputs, before: float) -> float:
     """Return who gives the torque in this tick; `before` is who did in the last one.
 
     The training knows forward speeds within its range, a dry or a wet screen under both blades, and no brake, wind,

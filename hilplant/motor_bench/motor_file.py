@@ -73,7 +73,7 @@ def _read(path: Path) -> Readings:
 
 
 def _document(path: Path, readings: Readings, values: Values) -> dict[str, Any]:
-    """Return the motor file; what was given and not told is said to be assumed."""
+    """Return the motor file; what was neither given nor measured is listed as assumed."""
     given = readings.given.model_fields_set
     brushes = {}
     for mode in MODES:

@@ -76,6 +76,6 @@ def _measure_bench(name: str, in_c: SimulateRows, measured: PartResult) -> None:
     shares = {mode: float((ours[:, OUTPUT_INDEX[f"{mode}_mode"]] == NETWORK).mean()) for mode in ("load", "motor")}
     said = "equal to the last bit" if apart == 0.0 else f"apart by {apart:.1g} of their size"
     measured.remarks.append(
-        f"{label}: {thesis_s / ours_s:.0f} times as fast as the thesis' {thesis_s:g} s; networks in charge of the load "
+        f"{label}: {thesis_s / ours_s:.0f} times as fast as the thesis' {thesis_s:g} s; networks active for the load "
         f"in {100.0 * shares['load']:.0f} %, of the motor in {100.0 * shares['motor']:.0f} % of the ticks; C {said}"
     )

@@ -7,7 +7,7 @@ from hilplant.failure import Failure
 
 
 class NotMeasurable(Failure):
-    """This machine cannot give the figure; the text says why, and what would mend it."""
+    """This machine cannot give the figure; the text says why, and what would fix it."""
 
 
 class Goal(NamedTuple):

@@ -65,8 +65,8 @@ def _compare(bench: Path, measured: PartResult, suffix: str, condition: str) -> 
 
 def _of_daemon(bench: Path) -> Latencies:
     run = run_daemon_once(bench, _SECONDS)
-    mend = run.missing("SCHED_FIFO")
-    if mend is not None:
-        raise NotMeasurable(f"the loop was refused SCHED_FIFO: {mend}")
+    fix = run.missing("SCHED_FIFO")
+    if fix is not None:
+        raise NotMeasurable(f"the loop was refused SCHED_FIFO: {fix}")
     names = ("p50_us", "p99_us", "p999_us", "max_us")
     return Latencies(*(float(run.summary[f"latency_{name}"]) for name in names))

@@ -48,7 +48,7 @@ def plot_torque(bench: Bench, out_png: str | PathLike[str]) -> None:
 
 
 def plot_conditions(bench: Bench, out_png: str | PathLike[str]) -> None:
-    """Draw the test of section 4.6, which the source shows in Figure 4-32.
+    """Draw the test of section 4.6, which the thesis shows in Figure 4-32.
 
     Raises
     ------

@@ -20,9 +20,9 @@ def plot_errors(dense: Dense, path: Path) -> None:
     figure, axes = figure_with((11, 7), 2, 2, sharex=True)
     for row, screen in enumerate(("dry", "wet")):
         physical, errors = (values[:, row].reshape(shape) for values in (dense.physical, dense.errors))
-        for place in np.linspace(0, len(speeds) - 1, 4).astype(int):
-            line = axes[row, 0].plot(angles, physical[place], label=f"{speeds[place]:.2g} rad/s")[0]
-            axes[row, 0].plot(angles, (physical + errors)[place], "--", color=line.get_color())
+        for index in np.linspace(0, len(speeds) - 1, 4).astype(int):
+            line = axes[row, 0].plot(angles, physical[index], label=f"{speeds[index]:.2g} rad/s")[0]
+            axes[row, 0].plot(angles, (physical + errors)[index], "--", color=line.get_color())
         axes[row, 0].set(ylabel=f"{screen} torque [N m]", title="physical, and network dashed" if row == 0 else "")
         most = np.abs(errors).max()
         shown = axes[row, 1].pcolormesh(angles, speeds, errors, cmap="RdBu_r", vmin=-most, vmax=most)

@@ -62,19 +62,19 @@ def parameter_rows(found: Identified, known: StartingPoint) -> list[dict[str, An
     """Return the table of parameters: the bench's value, each stage's, the interval, and what the data say."""
     rows = []
     before, choice = found.task.choice.values, found.task.choice
-    for place, (verdict, interval) in enumerate(zip(found.verdicts, found.intervals, strict=True)):
+    for index, (verdict, interval) in enumerate(zip(found.verdicts, found.intervals, strict=True)):
         rows.append(
             {
                 "name": verdict.name,
-                "unit": choice.parameters[place].unit,
-                "previous": before[place],
+                "unit": choice.parameters[index].unit,
+                "previous": before[index],
                 "first": known.first_stage.get(verdict.name),
-                "space": (found.space.low[place], found.space.high[place]),
-                "second": found.outcome.values[place],
+                "space": (found.space.low[index], found.space.high[index]),
+                "second": found.outcome.values[index],
                 "value": verdict.value,
                 "standard_error": verdict.standard_error,
                 "interval": interval,
-                "told": verdict.told,
+                "told": verdict.identifiable,
             }
         )
     return rows
@@ -89,5 +89,5 @@ def untold(found: Identified) -> list[dict[str, Any]]:
             "experiments": [each.text for each in found.advice if verdict.name in each.tells] or [""],
         }
         for verdict in found.verdicts
-        if not verdict.told
+        if not verdict.identifiable
     ]

@@ -61,11 +61,11 @@ def _lines(network: MotorNetwork, differences: Differences) -> list[str]:
     return [
         f"closed-loop MSE {last.errors[3]:.2e} (goal {GOAL_MSE:g}, thesis 0.0068), closed-loop training "
         f"{last.seconds:.1f} s (goal {GOAL_S:g} s, thesis 7 h 19 min)",
-        f"{found.scenarios} wild scenarios, in charge in {100.0 * found.share_in_charge:.0f} % of the ticks: one tick "
+        f"{found.scenarios} wild scenarios, active in {100.0 * found.share_in_charge:.0f} % of the ticks: one tick "
         f"of the network is at most {found.current_a:.3f} A and {found.crank_speed_rad_s:.4f} rad/s from one "
         f"of the physical motor (RMS {found.rms_current_a:.4f} A, {found.rms_crank_speed_rad_s:.5f} rad/s)",
         f"stated bounds for one tick: {bound['current_a']:g} A, {bound['crank_speed_rad_s']:g} rad/s",
-        f"{differences.runs} random runs of {differences.ticks} ticks in charge, each plant left to itself: current "
+        f"{differences.runs} random runs of {differences.ticks} ticks active, each plant left to itself: current "
         f"mean {differences.current_mean_a:.4f} A, RMS {differences.current_rms_a:.4f} A of a range of "
         f"{differences.current_range_a:.1f} A, worst {differences.current_worst_a:.2f} A in run "
         f"{differences.current_worst_run} at {differences.current_worst_s:.3f} s; crank speed mean "

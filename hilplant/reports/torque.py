@@ -120,7 +120,7 @@ def _torque_lines(figures: Figures) -> list[str]:
         f"variance {figures['validation_variance']:.2f}, "
         f"explained {100.0 * figures['validation_share_explained']:.3f} %",
         f"promised bounds: dry {figures['bound_dry_n_m']:g} N m, wet {figures['bound_wet_n_m']:g} N m",
-        f"{figures['scenario_scenarios']} random scenarios: in charge in {figures['scenario_ticks_in_charge']} of "
+        f"{figures['scenario_scenarios']} random scenarios: active in {figures['scenario_ticks_in_charge']} of "
         f"{figures['scenario_ticks']} ticks, beyond its bound in {figures['scenario_beyond_bound']}, "
         f"worst {figures['scenario_worst_n_m']:.3f} N m, RMS {figures['scenario_rms_n_m']:.3f} N m",
         f"against the physical plant: current RMS {figures['scenario_current_rms_a']:.3f} A of "

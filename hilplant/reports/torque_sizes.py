@@ -21,7 +21,7 @@ _VARIANCE = "Variance of the torques: {:.4g} (N m)2 in the training data, {:.4g}
 def study_torque(
     bench_name: str, options: TorqueOptions, most_neurons: int, on_progress: OnProgress = unseen
 ) -> TrainingReport:
-    """Put Table 6-1 beside ours, for the inputs of the source and for those of `options`, and draw Figure 6-7."""
+    """Put Table 6-1 beside ours, for the inputs of the thesis and for those of `options`, and draw Figure 6-7."""
     bench, folder = load_bench(bench_name), make_folder(options.out)
     studied: list[Studied] = []
     kinds = sorted({0, options.harmonics})

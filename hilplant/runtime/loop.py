@@ -82,7 +82,7 @@ class PlantRows(Protocol):
 
 @dataclass(slots=True)
 class Progress:
-    """Where the loop stands; read by whoever started it once the loop has ended."""
+    """Where the loop stands; read by its starter once the loop has ended."""
 
     ticks: int = 0
     overruns: int = 0

@@ -93,8 +93,8 @@ class Ring:
         shared = SharedMemory.create(_HEADER_BYTES + rows * row_width * 8 + frames * _FRAME_BYTES + beside)
         np.ndarray((len(shared.bytes),), np.uint8, shared.bytes)[:] = 0  # touch every page now
         words = memoryview(shared.bytes)[:_HEADER_BYTES].cast("q")
-        for place, value in ((_WIDTH, row_width), (_ROWS, rows), (_FRAMES, frames), (_MAGIC_AT, _MAGIC)):
-            words[place] = value
+        for index, value in ((_WIDTH, row_width), (_ROWS, rows), (_FRAMES, frames), (_MAGIC_AT, _MAGIC)):
+            words[index] = value
         return cls(shared)
 
     @classmethod

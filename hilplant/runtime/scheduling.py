@@ -19,7 +19,7 @@ class Privilege:
 
     name: str
     granted: bool
-    mend: str = ""
+    fix: str = ""
 
 
 def _fifo(priority: int) -> None:
@@ -32,12 +32,12 @@ def _lock_memory() -> None:
         raise OSError(ctypes.get_errno(), "mlockall")
 
 
-def _attempt(name: str, mend: str, action: Callable[[], object]) -> Privilege:
+def _attempt(name: str, fix: str, action: Callable[[], object]) -> Privilege:
     try:
         action()
     except (OSError, AttributeError) as error:
         reason = getattr(error, "strerror", None) or "not on this system"
-        return Privilege(name, False, f"{reason}; {mend}")
+        return Privilege(name, False, f"{reason}; {fix}")
     return Privilege(name, True)
 
 
@@ -50,8 +50,8 @@ def _shallow_sleep(granted: list[Privilege]) -> Iterator[None]:
             file = stack.enter_context(open("/dev/cpu_dma_latency", "wb", buffering=0))
             file.write(struct.pack("i", 0))
 
-        mend = "give the user write access to /dev/cpu_dma_latency"
-        granted.append(_attempt("cpu_dma_latency held at 0", mend, hold))
+        fix = "give the user write access to /dev/cpu_dma_latency"
+        granted.append(_attempt("cpu_dma_latency held at 0", fix, hold))
         yield
 
 
@@ -61,15 +61,15 @@ def real_time(priority: int, cpu: int | None) -> Iterator[list[Privilege]]:
     granted: list[Privilege] = []
     before = _scheduling()
     if cpu is not None:
-        mend = f"this process may use {sorted(before.cpus)}" if before is not None else "leave out loop.cpu"
-        granted.append(_attempt(f"pinned to CPU {cpu}", mend, lambda: os.sched_setaffinity(0, {cpu})))
+        fix = f"this process may use {sorted(before.cpus)}" if before is not None else "leave out loop.cpu"
+        granted.append(_attempt(f"pinned to CPU {cpu}", fix, lambda: os.sched_setaffinity(0, {cpu})))
     granted.append(_attempt("memory locked", "raise the memlock limit or grant CAP_IPC_LOCK", _lock_memory))
     gc.collect()
     gc.freeze()
     try:
         with _shallow_sleep(granted):
-            mend = "raise the rtprio limit or grant CAP_SYS_NICE"
-            granted.append(_attempt(f"SCHED_FIFO priority {priority}", mend, lambda: _fifo(priority)))
+            fix = "raise the rtprio limit or grant CAP_SYS_NICE"
+            granted.append(_attempt(f"SCHED_FIFO priority {priority}", fix, lambda: _fifo(priority)))
             yield granted
     finally:
         gc.unfreeze()

@@ -40,8 +40,8 @@ class Tape:
     def read_frames(self) -> NDArray[np.void]:
         """Return all frames as the ring holds them."""
         found = np.zeros(len(self.frames), FRAME_DTYPE)
-        for place, (tick, bus_ns, frame, sent) in enumerate(self.frames):
+        for index, (tick, bus_ns, frame, sent) in enumerate(self.frames):
             flags = sum(flag << bit for bit, flag in enumerate((sent, *frame[2:])))
             data = frame.data.ljust(64, b"\0")
-            found[place] = (tick, bus_ns, frame.identifier, flags, len(frame.data), 0, list(data))
+            found[index] = (tick, bus_ns, frame.identifier, flags, len(frame.data), 0, list(data))
         return found

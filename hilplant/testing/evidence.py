@@ -76,23 +76,23 @@ class Evidence:
 
     def _decoded(self, message: Any, signal: str) -> tuple[NDArray[np.int64], Floats]:
         places = self._places(message)
-        found = [(place, _value(message, self.frames[place].data, signal)) for place in places]
-        kept = [(place, value) for place, value in found if value is not None]
-        ticks = self.frame_ticks[[place for place, _ in kept]] if kept else np.zeros(0, np.int64)
+        found = [(index, _value(message, self.frames[index].data, signal)) for index in places]
+        kept = [(index, value) for index, value in found if value is not None]
+        ticks = self.frame_ticks[[index for index, _ in kept]] if kept else np.zeros(0, np.int64)
         return ticks, np.array([value for _, value in kept], np.float64)
 
     def _places(self, message: Any) -> list[int]:
         wanted = (message.frame_id, message.is_extended_frame)
         return [
-            place
-            for place, frame in enumerate(self.frames)
+            index
+            for index, frame in enumerate(self.frames)
             if (frame.identifier, frame.extended) == wanted and not (frame.remote or frame.error)
         ]
 
     def _frame_times(self, database: DatabaseSignals, name: str, count: int) -> FrameTimes:
         message, protection = database.messages[name], database.protections.get(name)
-        places = [place for place in self._places(message) if self.frame_ticks[place] < count]
-        counter, crc = _checked(protection, [self.frames[place].data for place in places])
+        places = [index for index in self._places(message) if self.frame_ticks[index] < count]
+        counter, crc = _checked(protection, [self.frames[index].data for index in places])
         ticks = self.frame_ticks[places] if places else np.zeros(0, np.int64)
         return FrameTimes(ticks, float(message.cycle_time or 0.0), counter, crc)
 

@@ -27,7 +27,7 @@ from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.server import build_loop
 from hilplant.runtime.tape import Tape
-from hilplant.signals import ECU_SAID, INPUT_INDEX, INPUTS, OUTPUTS
+from hilplant.signals import ECU_TX, INPUT_INDEX, INPUTS, OUTPUTS
 from hilplant.simulation.scenario import Scenario
 from hilplant.testing.evidence import Evidence
 from hilplant.units import MILLISECOND_NS, SECOND_NS
@@ -137,7 +137,7 @@ class _Commander:
 
     def __init__(self, bench: Bench, bus: InMemoryBus) -> None:
         messages: list[SentMessage] = [each for each in bench.ecu_side().send if _RELAYS & set(each.sources)]
-        self.values = [signal.default for signal in ECU_SAID]
+        self.values = [signal.default for signal in ECU_TX]
         self._node = Node((), messages, cast("Any", bus.end()), LinkSettings(), [])
 
     def send(self, now_ns: int) -> None:

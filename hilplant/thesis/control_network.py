@@ -1,6 +1,6 @@
 """Training of the speed network of section 7.5 of Dooner (2016): one hidden layer of tanh neurons for each brush.
 
-The source trains over the full range of voltages, wet and dry; its training data are lost figures. Here the plant makes
+The thesis trains over the full range of voltages, wet and dry; its training data are lost figures. Here the plant makes
 them: stairs of voltage, wet and dry; and Levenberg-Marquardt fits them. "Hidden layers" of its listings are neurons:
 ten, and eight in the other path.
 """

@@ -21,7 +21,7 @@ _DUTY_COLUMNS = ("energy [Wh]", "i2 t [A2 h]", "motor turns", "wipes", "peak [A]
 
 
 def report(study: Study, seconds: float) -> list[Part]:
-    """Return all tables; the source's numbers stand under ours. `seconds` is how long the study took."""
+    """Return all tables; the thesis' numbers stand under ours. `seconds` is how long the study took."""
     return [
         *(_beside(study, number, title) for number, title in _TITLES.items()),
         _metric_table(
@@ -59,11 +59,11 @@ def _remarks(study: Study) -> list[str]:
     for figure, order in study.orders.items():
         swapped = "; ".join(f"{a} before {b} ({100.0 * (ratio - 1.0):.0f} %)" for a, b, ratio in order.swapped)
         lines.append(
-            f"Order by {figure}: Kendall's tau {order.tau:.2f}; in the source, not in ours: {swapped or 'none'}"
+            f"Order by {figure}: Kendall's tau {order.tau:.2f}; in the thesis, not in ours: {swapped or 'none'}"
         )
     compared, beyond = compare_all(study)
     off = "; ".join(f"{name}, {column}: {factor:.2f}" for name, column, factor in beyond)
-    lines.append(f"{compared - len(beyond)} of {compared} figures within a factor of 3 of the source's; not: {off}")
+    lines.append(f"{compared - len(beyond)} of {compared} figures within a factor of 3 of the thesis'; not: {off}")
     return [*lines, ""]
 
 

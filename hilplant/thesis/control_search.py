@@ -12,7 +12,7 @@ from hilplant.control.records import RULES
 from hilplant.thesis.control_test import Metrics, metrics, run_drive, thesis_drive
 from hilplant.units import SECOND_NS
 
-#: Highest overshoot [rad/s] of each aim: none to speak of, with a fixed K; and the source's limit for the fuzzy K.
+#: Highest overshoot [rad/s] of each aim: none to speak of, with a fixed K; and the thesis' limit for the fuzzy K.
 AIMS = {"calm": 0.01, "quick": 0.6}
 
 #: Bounds of the decimal logarithms: K or the fuzzy gain; learning rates (integral, proportional, derivative); weights.
@@ -42,7 +42,7 @@ def cost(result: Metrics, highest_overshoot_rad_s: float) -> float:
 
 
 def search(bench: Bench, rule: str, aim: str, seed: int = 1, generations: int = 25) -> FoundGains:
-    """Search the gains of one rule for one aim, from the source's gains on; the same seed finds the same gains."""
+    """Search the gains of one rule for one aim, from the thesis' gains on; the same seed finds the same gains."""
     motor, period_s, drive = bench.parameters.motor, bench.step_ns / SECOND_NS, thesis_drive(bench)
     runs = 0
 
@@ -67,7 +67,7 @@ def search(bench: Bench, rule: str, aim: str, seed: int = 1, generations: int = 
 
 
 def source_gains(rule: str, aim: str) -> np.ndarray:
-    """Return the decimal logarithms of the source's gains; a weight of 0 is taken as 0.1."""
+    """Return the decimal logarithms of the thesis' gains; a weight of 0 is taken as 0.1."""
     gain = CALM_GAINS[rule] if aim == "calm" else FUZZY_GAINS[rule]
     weights = [max(weight, 0.1) for weight in INITIAL_WEIGHTS[rule]]
     return np.log10([gain, 1.0, 1.5, 1.0, *weights])

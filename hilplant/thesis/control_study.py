@@ -1,4 +1,4 @@
-"""`hilplant study control`: all controllers through the test of section 7.2, beside the source's tables."""
+"""`hilplant study control`: all controllers through the test of section 7.2, beside the thesis' tables."""
 
 import math
 from dataclasses import replace
@@ -126,7 +126,7 @@ def draw(study: Study, bench: Bench, folder: Path) -> list[str]:
         groups.append((rule, f"Single neuron, {title} rule, fixed K (compare Figure {fixed})", names))
         names = [row.name for row in of_rule if row.fuzzy]
         groups.append((f"{rule}_fuzzy", f"Single neuron, {title} rule, fuzzy K (compare Figure {fuzzy})", names))
-    groups.append(("cascade", "Cascade with load observer, and the best of the source's", ["cascade", ROWS[-2].name]))
+    groups.append(("cascade", "Cascade with load observer, and the best of the thesis'", ["cascade", ROWS[-2].name]))
     dry = [(begin_s, end_s) for begin_s, end_s, _, wet in STATES if wet == 0.0]
     plots.plot_all(folder, study.runs, dry, groups)
     plots.plot_fuzzy(folder / "fuzzy_sets.png")

@@ -28,7 +28,7 @@ STATES = (
 )
 SECONDS = STATES[-1][1]
 
-#: Where the crank stands at the start [rad]. The source does not say; at the park position all slow controllers creep
+#: Where the crank stands at the start [rad]. The thesis does not say; at the park position all slow controllers creep
 #: towards the reference for half a turn, here they rise as its tables tell.
 START_RAD = 0.65
 
@@ -51,11 +51,11 @@ class Metrics(NamedTuple):
 
     @property
     def mean_rad_s(self) -> float:
-        """The mean of the ten errors, the source's average."""
+        """The mean of the ten errors, the thesis' average."""
         return float(np.mean([*self.low, *self.high]))
 
     def row(self) -> tuple[float, ...]:
-        """Return the numbers in the order of the source's tables."""
+        """Return the numbers in the order of the thesis' tables."""
         pairs = [value for pair in zip(self.low, self.high, strict=True) for value in pair]
         return (self.overshoot_rad_s, self.rise_s, *pairs)
 
@@ -112,8 +112,8 @@ def run_drive(bench: Bench, controller: Controller, drive: SpeedProfile, tables:
 def metrics(run: DriveRun, settling_s: float = SETTLING_S) -> Metrics:
     """Return overshoot, rise time and the errors of the five states of a run of :func:`thesis_drive`.
 
-    The rise time is the source's, from zero to the first tick at the reference (infinite if it is never met). Of
-    the errors `low` is how far the speed falls below the reference, `high` how far above. The source calls the
+    The rise time is the thesis', from zero to the first tick at the reference (infinite if it is never met). Of
+    the errors `low` is how far the speed falls below the reference, `high` how far above. The thesis calls the
     columns "Low(-)" and "High" and does not say of which difference; its figures fit both readings about as well.
     """
     speed, error = run["crank_speed_rad_s"], run["crank_speed_rad_s"] - run.reference_rad_s
@@ -130,7 +130,7 @@ def metrics(run: DriveRun, settling_s: float = SETTLING_S) -> Metrics:
 def overshoot(run: DriveRun, speed: Floats) -> float:
     """Return by how much [rad/s] the first turn goes beyond the reference and beyond what the settled ripple does.
 
-    The source lists no overshoot for controllers whose ripple is above the reference all the time, so it does not
+    The thesis lists no overshoot for controllers whose ripple is above the reference all the time, so it does not
     count ripple. Ripple repeats with the crank angle: what the last turn of state 1 does at the same angle is taken
     off.
     """

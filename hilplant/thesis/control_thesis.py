@@ -13,7 +13,7 @@ from hilplant.thesis.control_test import Metrics
 
 
 class ThesisRow(NamedTuple):
-    """One row of the source: where it stands, who it is, and its twelve numbers in the source's order."""
+    """One row of the thesis: where it stands, who it is, and its twelve numbers in the thesis' order."""
 
     table: str
     rule: str
@@ -68,20 +68,20 @@ def controller_of(row: ThesisRow, motor: Motor, period_s: float) -> Controller:
 
 
 def factors(row: ThesisRow, ours: Metrics) -> dict[str, float]:
-    """Return ours over the source's for each column; a column that is 0 in the source is left out."""
+    """Return ours over the thesis' for each column; a column that is 0 in the thesis is left out."""
     pairs = zip(COLUMNS, ours.row(), row.numbers, strict=True)
     return {column: mine / its for column, mine, its in pairs if its > 0.0}
 
 
 def far_off(row: ThesisRow, ours: Metrics, limit: float = 3.0) -> dict[str, float]:
-    """Return the columns in which ours is not within a factor of `limit` of the source's."""
+    """Return the columns in which ours is not within a factor of `limit` of the thesis'."""
     return {name: f for name, f in factors(row, ours).items() if not 1.0 / limit <= f <= limit}
 
 
 class Order(NamedTuple):
-    """How alike two orders are: Kendall's tau, and the pairs in the other order, the widest apart in the source first.
+    """How alike two orders are: Kendall's tau, and the pairs in the other order, the widest apart in the thesis first.
 
-    A pair is (the one that is first in the source, the other, the source's ratio of their figures).
+    A pair is (the one that is first in the thesis, the other, the thesis' ratio of their figures).
     """
 
     tau: float
@@ -103,7 +103,7 @@ def compare_order(names: Sequence[str], its: Sequence[float], ours: Sequence[flo
 def orders(results: Mapping[str, Metrics]) -> dict[str, Order]:
     """Compare the order by rise time and by disturbance rejection, which is the mean of the errors.
 
-    Two rows of the source (Hebb K=0.5, Error-Hebb K=1) have in state 3 what can only be the overshoot of the step to
+    Two rows of the thesis (Hebb K=0.5, Error-Hebb K=1) have in state 3 what can only be the overshoot of the step to
     it: four times their state 2. So the order is also given without state 3.
     """
     names, its = [row.name for row in ROWS], [row.numbers for row in ROWS]

@@ -13,7 +13,7 @@ from hilplant.identify.parameters import Choice, chosen
 from hilplant.identify.profile import ConfidenceInterval, profile
 from hilplant.identify.residuals import LeastSquares, expected_noise
 from hilplant.identify.run_of_data import make_run
-from hilplant.identify.twin import Spoiling, TwinCondition, recorded
+from hilplant.identify.twin import Corruption, TwinCondition, recorded
 from hilplant.identify.uncertainty import spread, verdicts
 from hilplant.measurements.measurement import Samples
 
@@ -40,11 +40,11 @@ class Coverage(NamedTuple):
     deviation: dict[str, float]
 
 
-def twin_runs(bench: Bench, conditions: Sequence[TwinCondition], how: Spoiling, seed: int) -> list[Run]:
+def twin_runs(bench: Bench, conditions: Sequence[TwinCondition], how: Corruption, seed: int) -> list[Run]:
     """Return what identification gets of one seed: its own start and switching in each recording, its own noise."""
     return [
-        make_run(recorded(bench, condition, how, 1000 * seed + place), bench, condition.screen)
-        for place, condition in enumerate(conditions)
+        make_run(recorded(bench, condition, how, 1000 * seed + index), bench, condition.screen)
+        for index, condition in enumerate(conditions)
     ]
 
 
@@ -65,8 +65,8 @@ def trial(bench: Bench, runs: Sequence[Run], seed: int, part: float = 0.2) -> Tr
     intervals = zip(said, profile(found, known, said), strict=True)
     return Trial(
         seed,
-        {each.name: each.told for each in said},
-        {each.name: each.told and holds(interval, truth[each.name]) for each, interval in intervals},
+        {each.name: each.identifiable for each in said},
+        {each.name: each.identifiable and holds(interval, truth[each.name]) for each, interval in intervals},
         {each.name: (each.value - truth[each.name]) / each.standard_error for each in said},
     )
 
@@ -77,7 +77,7 @@ def holds(interval: ConfidenceInterval, value: float) -> bool:
 
 
 def trials(
-    bench: Bench, conditions: Sequence[TwinCondition], how: Spoiling, seeds: Iterable[int],
+    bench: Bench, conditions: Sequence[TwinCondition], how: Corruption, seeds: Iterable[int],
     done: Callable[[Trial], None] = lambda _: None,
 ) -> list[Trial]:  # fmt: skip
     """Run a trial for each seed."""

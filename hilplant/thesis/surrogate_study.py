@@ -148,7 +148,7 @@ def lines(compared: list[Compared], seconds: float) -> list[str]:
         f"{FINER} times shorter, and {seconds:g} s on the bus (goals: {goals})"
     )
     rows = [head, f"{'':16}{'step':>9}{'to C':>7}{'current RMS':>16}{'stops':>10}{'angle':>10}{'current':>10}"
-                  f"{'in charge':>17}{'kept':>6}"]  # fmt: skip
+                  f"{'active':>17}{'kept':>6}"]  # fmt: skip
     for one in compared:
         angle = "-" if np.isnan(one.worst_angle_deg) else f"{one.worst_angle_deg:.2f} deg"
         charge = f"{100.0 * one.load_in_charge:.0f} %, {100.0 * one.motor_in_charge:.0f} %"

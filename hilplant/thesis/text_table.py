@@ -1,4 +1,4 @@
-"""A table as the studies return it: whoever shows it decides how."""
+"""A table as the studies return it: the command line decides how."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -18,7 +18,7 @@ from hilplant.identify.genetic import SearchSettings, Space, order_of
 from hilplant.identify.optimisers import OPTIMISERS
 from hilplant.identify.parameters import Choice, chosen, search_space
 from hilplant.identify.three_stages import Identified, Task, identify
-from hilplant.identify.twin import CLEAN, Spoiling, recorded, thesis_conditions
+from hilplant.identify.twin import CLEAN, Corruption, recorded, thesis_conditions
 from hilplant.measurements.measurement import Measurement, Samples
 from hilplant.signals import OUTPUT_INDEX
 from hilplant.simulation.batch import simulate_batch
@@ -28,7 +28,7 @@ Say = Callable[[str], None]
 Batch = Callable[[Samples, Samples, Samples, Samples, Samples], None]
 
 FITTED_V, HELD_OUT_V = (12.0, 14.0, 16.0), (10.0, 13.0, 15.0)
-NOISE = Spoiling()
+NOISE = Corruption()
 #: What is to be reached: error on held-out data over the noise, error of R and K, part of the intervals that hold.
 NOISE_RATIO, ERROR, HOLDS = 1.2, 0.03, 0.9
 #: Force of the arm about which the search space is laid, as nobody knows it [N].
@@ -98,7 +98,7 @@ def _judged(found: Identified, first_s: float) -> Full:
         for verdict in found.verdicts
         if verdict.name.endswith(("resistance_ohm", "constant_v_s"))
     ]
-    pairs = [pair for pair in zip(found.verdicts, found.intervals, strict=True) if pair[0].told]
+    pairs = [pair for pair in zip(found.verdicts, found.intervals, strict=True) if pair[0].identifiable]
     inside = sum(holds(interval, truth[verdict.name]) for verdict, interval in pairs)
     return Full(found, first_s, ratio, max(errors), inside, len(pairs))
 
@@ -124,8 +124,8 @@ def full_lines(bench: Bench, seeds: int, settings: SearchSettings, figures: dict
             "full_s": max(each.seconds for each in done),
             "evaluations_per_s": float(np.median([each.found.times.evaluations_per_s for each in done])),
         }
-        names = [verdict.name for verdict in done[0].found.verdicts if not verdict.told]
-        yield f"not told by such data, and named so: {', '.join(names)}"
+        names = [verdict.name for verdict in done[0].found.verdicts if not verdict.identifiable]
+        yield f"not identifiable, and named so: {', '.join(names)}"
 
 
 def coverage_lines(bench: Bench, seeds: int, figures: dict[str, Any]) -> Iterator[str]:
@@ -143,7 +143,9 @@ def coverage_lines(bench: Bench, seeds: int, figures: dict[str, Any]) -> Iterato
     sure = [name for name, told in found.told.items() if told > 0.5 * seeds]
     figures["identifiable"] = sure
     figures["worst_inside"], figures["worst_told"] = min(
-        ((found.inside[name], found.told[name]) for name in sure), key=lambda pair: pair[0] / pair[1], default=(0, 0)
+        ((found.inside[name], found.told[name]) for name in sure),
+        key=lambda pair: pair[0] / pair[1],
+        default=(0, 0),
     )
 
 

@@ -1,6 +1,6 @@
 """Look-up tables of positions, velocities and accelerations, section 6.2 of Dooner (2016), with a stated error.
 
-The source tabulates positions and differentiates them in time. Here the table holds positions and their exact
+The thesis tabulates positions and differentiates them in time. Here the table holds positions and their exact
 derivatives by the crank angle, and so do those that are asked for: position p, velocity p' w, and acceleration
 p'' w^2 + p' a, p'' again from a table of p'. The knots are as few as keep every one of them within the bound.
 """

@@ -43,10 +43,10 @@ def train_motor(bench: Bench, seed: int, command: str, on_progress: OnProgress) 
     Ctrl-C ends the stage of training that runs, and each that follows, with the best weights so far.
     """
     paths = []
-    for place, brush in enumerate(("slow", "fast")):
-        sequence = recorded(bench, brush, LENGTH_S, np.random.default_rng([seed, place, 0]))
+    for index, brush in enumerate(("slow", "fast")):
+        sequence = recorded(bench, brush, LENGTH_S, np.random.default_rng([seed, index, 0]))
         with one_thread():
-            paths.append(train_path(brush, sequence, np.random.default_rng([seed, place, 1]), on_progress))
+            paths.append(train_path(brush, sequence, np.random.default_rng([seed, index, 1]), on_progress))
     sections = {path.brush: _section(path) for path in paths}
     rows = [PathSection.model_validate(section).row() for section in sections.values()]
     networks = np.concatenate([[0.0], *rows])

@@ -27,7 +27,7 @@ class Grid:
 
 @dataclass(frozen=True, slots=True)
 class Differences:
-    """Errors in the ticks in which the network was in charge, over runs new to it, and where the worst is."""
+    """Errors in the ticks in which the network was active, over runs new to it, and where the worst is."""
 
     runs: int
     ticks: int

@@ -1,6 +1,6 @@
 """What the motor network learns from: the physical plant under a supply, a load and relays that change at random.
 
-Appendix F of Dooner (2016) shows the source's signals in figures only. What its text asks for is here: all that the
+Appendix F of Dooner (2016) shows the thesis' signals in figures only. What its text asks for is here: all that the
 motor does must happen in the first 70 % of the time, up to 18 V.
 """
 
@@ -35,7 +35,7 @@ SHARES = (0.70, 0.85)
 class DrivenSequence:
     """One brush's data by tick: inputs [n, 2] voltage and torque, outputs [n, 2] current and speed, both at the crank.
 
-    `known[k]` says that the network is to predict tick k + 1 from tick k; elsewhere the physical model is in charge.
+    `known[k]` says that the network is to predict tick k + 1 from tick k; elsewhere the physical model is active.
     """
 
     inputs: Floats

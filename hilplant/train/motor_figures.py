@@ -49,7 +49,7 @@ def _errors(paths: list[TrainedPath], closed: bool, after_closed: bool) -> tuple
 def path_figures(path: TrainedPath) -> dict[str, dict[str, float]]:
     """Return what stands in the file: errors by part in closed loop, the variance beside them, and share explained.
 
-    Only ticks that the network answers for count: where the physical model is in charge there is no error.
+    Only ticks that the network answers for count: where the physical model is active there is no error.
     """
     errors = path.errors(True)
     figures: dict[str, dict[str, float]] = {}
@@ -70,7 +70,7 @@ def path_figures(path: TrainedPath) -> dict[str, dict[str, float]]:
 
 
 def table(paths: list[TrainedPath]) -> str:
-    """Return the rows beside those of the source, with the variances that the errors are to be held against."""
+    """Return the rows beside those of the thesis, with the variances that the errors are to be held against."""
     title = "mean squared error over current [A] and crank speed [rad/s] of both brushes, ours (Table 6-3)"
     rows = [title, f"{'':28}" + "".join(f"{part:>22}" for part in PARTS) + f"{'time':>22}"]
     for line in lines(paths):

@@ -128,7 +128,7 @@ class TrainedPath:
 
 
 def first_weights(neurons: int, random: np.random.Generator) -> Floats:
-    """Return weights to begin with, by Nguyen and Widrow (1990), as initnw of the source's listing does."""
+    """Return weights to begin with, by Nguyen and Widrow (1990), as initnw of the thesis' listing does."""
     size = 0.7 * neurons ** (1.0 / WIDTH)
     inner = random.uniform(-1.0, 1.0, (neurons, WIDTH))
     inner *= size / np.linalg.norm(inner, axis=1, keepdims=True)
@@ -147,13 +147,13 @@ def train_path(
     weights = first_weights(NEURONS[brush], random)
     stages = (OPEN, *CLOSED)
     epochs, seconds, open_weights, stopped = [0, 0], [0.0, 0.0], weights, False
-    for place, (horizon, settings) in enumerate(stages):
-        noise = NOISE * random.standard_normal(sequence.outputs.shape) if place == 0 else None
+    for index, (horizon, settings) in enumerate(stages):
+        noise = NOISE * random.standard_normal(sequence.outputs.shape) if index == 0 else None
         stage = _Stage(MotorFit(sequence, scaling, horizon, noise), settings, f"{brush}, {_named(horizon)}")
         weights, stopped = stage.run(weights, on_progress)
-        epochs[min(place, 1)] += stage.epochs
-        seconds[min(place, 1)] += stage.seconds
-        if place == 0:
+        epochs[min(index, 1)] += stage.epochs
+        seconds[min(index, 1)] += stage.seconds
+        if index == 0:
             open_weights = weights
         if stopped:
             break

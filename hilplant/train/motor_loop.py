@@ -1,7 +1,7 @@
 """The motor network run over a sequence, with all derivatives by its weights: compiled, for training alone.
 
 In closed loop the network reads its own answers, so the derivatives of a tick contain those of the two ticks before:
-forward sensitivities through the whole recurrent run. A stretch ends where the physical model is in charge, and the
+forward sensitivities through the whole recurrent run. A stretch ends where the physical model is active, and the
 next one begins from what that leaves, as in the plant. A horizon ends it earlier: 1 is the open loop, which reads the
 true values in every tick; numbers between lead from there to the closed loop, in which a network that was trained in
 open loop alone may run away.

@@ -1,7 +1,7 @@
-"""A search for the inputs at which the motor network is in charge and far from the physical motor.
+"""A search for the inputs at which the motor network is active and far from the physical motor.
 
 Each tick of a scenario is taken twice from the same state, by the network with its guard and by the physical model;
-the difference counts where the network was in charge. The scenarios go far beyond the training: 0 to 30 V, blocked
+the difference counts where the network was active. The scenarios go far beyond the training: 0 to 30 V, blocked
 cranks, wind, worn blades, chattering relays, and any speed, current and angle at the start.
 """
 
@@ -46,11 +46,11 @@ def differences(state_row: Any, input_rows: Any, parameter_rows: Any, tables: An
     """Run a scenario by `parameter_rows[1]`, each tick also by `parameter_rows[0]` from the same state.
 
     `found` takes the largest difference in current and its tick, the same in motor speed, both sums of squares, and
-    the ticks in which the network was in charge.
+    the ticks in which the network was active.
     """
     state = unpack(State, state_row)
-    for place in range(7):
-        found[place] = 0.0
+    for index in range(7):
+        found[index] = 0.0
     for tick in range(input_rows.shape[0]):
         inputs, before, physical = unpack(Inputs, input_rows[tick]), state, state
         for which in range(2):

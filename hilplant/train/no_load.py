@@ -1,7 +1,7 @@
 """The no-load torque of any linkage as two polynomials, section 6.3 of Dooner (2016).
 
 A linkage without arms and blades needs the torque of its inertia, M'(angle) w^2/2, and of what little damping its
-pivots have. The source gives neither masses nor damping for its fit; here both are those of the bench's linkage.
+pivots have. The thesis gives neither masses nor damping for its fit; here both are those of the bench's linkage.
 """
 
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Random scenarios against the physical plant: how far the network is off where it is in charge, and what follows."""
+"""Random scenarios against the physical plant: how far the network is off where it is active, and what follows."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from hilplant.models import torque_samples as samples
 from hilplant.models.load import LOADS
 from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX
 from hilplant.progress import OnProgress, ProgressReport, unseen
-from hilplant.signals import IN_CHARGE, INPUT_INDEX
+from hilplant.signals import ACTIVE_MODELS, INPUT_INDEX
 from hilplant.simulation.batch import simulate_batch
 from hilplant.train.random_scenarios import random_inputs, random_state
 from hilplant.train.torque_file import network_torques
@@ -18,7 +18,7 @@ from hilplant.train.torque_file import network_torques
 Floats = NDArray[np.float64]
 
 COLUMNS = ("crank_angle_rad", "crank_speed_rad_s", "load_mode", "current_a", "park_contact")
-NETWORK = IN_CHARGE.index("network")
+NETWORK = ACTIVE_MODELS.index("network")
 
 #: Scenarios that are run at once, which keeps the memory small.
 _AT_ONCE = 100
@@ -28,7 +28,7 @@ _AT_ONCE = 100
 class TorqueDifferences:
     """What came of the scenarios; `where` is scenario, tick, angle, speed and wetness of the worst torque.
 
-    Torques in N m, of the ticks with the network in charge; `excess` is the largest part of the bound that was used.
+    Torques in N m, of the ticks with the network active; `excess` is the largest part of the bound that was used.
     """
 
     scenarios: int = 0
@@ -120,7 +120,7 @@ def _run(bench: Bench, inputs: Floats, seeds: list[int], load: str) -> Floats:
 def _compare_torques(
     found: TorqueDifferences, bench: Bench, bounds: tuple[float, float], run: tuple[Floats, Floats, int]
 ) -> None:
-    """Compare network and physical load at every angle and speed that was met with the network in charge."""
+    """Compare network and physical load at every angle and speed that was met with the network active."""
     rows, screens, first = run
     in_charge = rows[:, :, 2] == NETWORK
     found.scenarios += len(rows)

@@ -1,4 +1,4 @@
-"""Printed figures of the source's torque network: Tables 6-1 and 6-2 of Dooner (2016)."""
+"""Printed figures of the thesis' torque network: Tables 6-1 and 6-2 of Dooner (2016)."""
 
 #: Table 6-1 by neurons: mean squared errors of train, validate, test, total, separate validation; training time [s].
 TABLE_6_1 = {

@@ -12,7 +12,7 @@ from hilplant.identify.parameters import SEVENTEEN, Choice, chosen
 from hilplant.identify.profile import profile
 from hilplant.identify.residuals import LeastSquares, ResidualNoise, directions, edge_errors_s, expected_noise
 from hilplant.identify.run_of_data import make_run
-from hilplant.identify.twin import CLEAN, Spoiling, TwinCondition, chance, played, spoilt, thesis_conditions
+from hilplant.identify.twin import CLEAN, Corruption, TwinCondition, chance, corrupted, played, thesis_conditions
 from hilplant.identify.uncertainty import spread, verdicts
 from hilplant.thesis.coverage import twin_runs
 
@@ -100,7 +100,7 @@ def test_an_interval_allows_for_what_is_hardly_told(regression):
     solution = search(Straight(design, data), np.array([1.0, 1.1, 0.9, 1.05]))
     known = spread(solution)
     said = verdicts(solution, known)
-    assert [each.told for each in said] == [True, True, True, False]
+    assert [each.identifiable for each in said] == [True, True, True, False]
     error = np.sqrt(np.linalg.inv(design.T @ design)[0, 0])
     low, high = profile(solution, known, said)[0]
     assert 1.96 * 0.97 * error < 0.5 * (high - low) < 1.96 * 1.5 * error
@@ -127,7 +127,7 @@ def test_what_two_columns_say_together_is_not_told_apart():
     data = design @ np.array([1.0, 1.1, 0.9, 1.05]) + 0.1 * random.standard_normal(SAMPLES + EDGES)
     solution = search(Straight(design, data), np.array([0.9, 1.0, 1.0, 1.0]))
     said = verdicts(solution, spread(solution))
-    assert [each.told for each in said] == [True, False, False, True]
+    assert [each.identifiable for each in said] == [True, False, False, True]
     assert said[1].together == (said[2].name,)
     assert said[2].together == (said[1].name,)
     intervals = profile(solution, spread(solution), said)
@@ -138,7 +138,7 @@ def test_what_two_columns_say_together_is_not_told_apart():
 def wipe():
     """One wipe at 14 V, slow and dry, as the plant makes it."""
     bench = load_bench("default")
-    data = spoilt(played(bench, TwinCondition(False, 0.0, (14.0,))), CLEAN, 0.001, 0)
+    data = corrupted(played(bench, TwinCondition(False, 0.0, (14.0,))), CLEAN, 0.001, 0)
     runs = [make_run(data, bench, 0.0)]
     choice = chosen(bench.parameter_row)
     return bench, runs, LeastSquares(runs, choice, bench.tables, ResidualNoise(0.1, 3e-4), np.abs(choice.values))
@@ -184,7 +184,7 @@ def test_no_two_noises_share_the_rounding_of_their_park_edges(wipe):
         row = []
         for condition in thesis_conditions((12.0, 16.0)):
             drawn = chance(bench, condition, seed)
-            run = make_run(spoilt(played(bench, condition, CLEAN, drawn), CLEAN, 0.001, 0), bench, condition.screen)
+            run = make_run(corrupted(played(bench, condition, CLEAN, drawn), CLEAN, 0.001, 0), bench, condition.screen)
             made = simulate_run(run, bench.parameter_row[np.newaxis], np.array([drawn.start_rad]), bench.tables)
             assert np.max(np.abs(made.current_a[0] - run.current_a)) < 1e-9
             speeds = (made.phase_rad[0, run.edges] - made.phase_rad[0, run.edges - 1]) / 0.001
@@ -200,6 +200,6 @@ def test_no_two_noises_share_the_rounding_of_their_park_edges(wipe):
 
 def test_noise_is_seen_from_sample_to_sample(wipe):
     bench, *_ = wipe
-    how = Spoiling(0.2, 0.01)
+    how = Corruption(0.2, 0.01)
     runs = twin_runs(bench, [TwinCondition(False, 0.0, (14.0,))], how, 5)
     assert expected_noise(runs).current_a == pytest.approx(0.2, rel=0.1)

@@ -48,8 +48,8 @@ def test_compiled_code_gives_what_the_file_says_and_its_slope_by_the_torque(benc
     low, high = np.array([written[brush]["range"][name] for name in QUANTITIES]).T
     for _ in range(50):
         now, before = random.uniform(low, high), random.uniform(low, high)
-        place = path_of(networks, BRUSHES[brush])
-        ours = predict(networks, place, Sample(*now), Sample(*before))
+        index = path_of(networks, BRUSHES[brush])
+        ours = predict(networks, index, Sample(*now), Sample(*before))
         assert ours[:2] == pytest.approx(by_numpy(written[brush], np.concatenate([now, before])), rel=1e-9, abs=1e-10)
         step = np.array([0.0, 1e-4, 0.0, 0.0])
         ends = [by_numpy(written[brush], np.concatenate([now + sign * step, before])) for sign in (1.0, -1.0)]
@@ -73,11 +73,11 @@ def test_left_alone_for_a_second_it_follows_an_adaptive_solver_of_the_equations_
     times = np.arange(1001) * 1e-3
     start = [8.0, 1.5 * ratio]
     true = solve_ivp(rates, (0.0, 1.0), start, "Radau", times, rtol=1e-9, atol=1e-9).y / [[1.0], [ratio]]
-    place = path_of(networks, BRUSHES[brush])
+    index = path_of(networks, BRUSHES[brush])
     before, state = true[:, 0], true[:, 1]
     answers = [before, state]
     for _ in range(999):
-        after = predict(networks, place, Sample(voltage, torque, *state), Sample(voltage, torque, *before))
+        after = predict(networks, index, Sample(voltage, torque, *state), Sample(voltage, torque, *before))
         before, state = state, np.array(after[:2])
         answers.append(state)
     errors = np.abs(np.array(answers).T - true)
@@ -102,11 +102,11 @@ def test_derivatives_through_the_feedback_are_those_of_finite_differences(horizo
 
     none, jacobian = np.zeros((0, 2, len(weights))), np.zeros((count, 2, len(weights)))
     answers(weights, jacobian)
-    for place in range(len(weights)):
+    for index in range(len(weights)):
         step = np.zeros(len(weights))
-        step[place] = 1e-6
+        step[index] = 1e-6
         differences = (answers(weights + step, none) - answers(weights - step, none)) / 2e-6
-        assert jacobian[1:, :, place] == pytest.approx(differences[1:], abs=2e-6), place
+        assert jacobian[1:, :, index] == pytest.approx(differences[1:], abs=2e-6), index
 
 
 def test_the_torque_that_is_learnt_from_is_the_one_that_was_applied(bench) -> None:

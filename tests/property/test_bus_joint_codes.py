@@ -49,8 +49,8 @@ def test_an_enum_of_both_relays_is_read_and_written(drawn: tuple[Message, dict[i
     labels = message.signals[0].choices or {}
     named = {raw: str(labels.get(raw, raw)) for raw in meanings}
     mappings = [
-        SignalMapping("Stage", plant, choices={named[raw]: both[place] for raw, both in meanings.items()})
-        for place, plant in enumerate(("relay_on", "relay_fast"))
+        SignalMapping("Stage", plant, choices={named[raw]: both[index] for raw, both in meanings.items()})
+        for index, plant in enumerate(("relay_on", "relay_fast"))
     ]
     said = {tuple(float(word == "on") for word in both): raw for raw, both in meanings.items()}
     if {on for on, _ in said} != {0.0, 1.0} or {fast for _, fast in said} != {0.0, 1.0}:

@@ -1,4 +1,4 @@
-"""Identification of twin data: the truth is known, the signals are spoilt as on a rig."""
+"""Identification of twin data: the truth is known, the signals are corrupted as on a rig."""
 
 import os
 import signal
@@ -20,7 +20,7 @@ from hilplant.identify.parameters import chosen, search_space
 from hilplant.identify.residuals import LeastSquares, expected_noise
 from hilplant.identify.run_of_data import make_run
 from hilplant.identify.three_stages import EXPLAINED, Task, identify, refined
-from hilplant.identify.twin import CLEAN, Spoiling, TwinCondition, played, spoilt, thesis_conditions, write_csv
+from hilplant.identify.twin import CLEAN, Corruption, TwinCondition, corrupted, played, thesis_conditions, write_csv
 from hilplant.identify.uncertainty import spread, verdicts
 from hilplant.identify.validation import compare
 from hilplant.thesis.coverage import off_start, twin_runs
@@ -50,9 +50,9 @@ def last_stage(bench, how, seed=1):
 @pytest.mark.parametrize(
     "how",
     [
-        Spoiling(),
-        Spoiling(ripple_v=0.3, voltmeter_v=0.02),
-        Spoiling(current_a=0.3, quantum_a=0.1, park_jitter_s=0.003, missing_part=0.05),
+        Corruption(),
+        Corruption(ripple_v=0.3, voltmeter_v=0.02),
+        Corruption(current_a=0.3, quantum_a=0.1, park_jitter_s=0.003, missing_part=0.05),
     ],
     ids=["noise", "ripple", "jitter, gaps, coarse"],
 )
@@ -63,7 +63,7 @@ def test_the_motor_is_told_and_friction_is_not_guessed(bench, how):
     """
     solution, said = last_stage(bench, how)
     truth = dict(zip(solution.problem.choice.names, chosen(bench.parameter_row).values, strict=True))
-    told = {each.name for each in said if each.told}
+    told = {each.name for each in said if each.identifiable}
     assert told >= MOTOR
     assert not told & {"force_n", "mu_dry_1", "mu_wet_7"}
     for each in said:
@@ -76,8 +76,8 @@ def test_the_motor_is_told_and_friction_is_not_guessed(bench, how):
 
 def test_three_stages_from_the_published_start_predict_held_out_data(bench):
     """(5.22) about Table 5-3 leaves out the truth of two parameters; the last stage goes on to it, and says so."""
-    runs = twin_runs(bench, thesis_conditions(VOLTS), Spoiling(), 3)
-    held_out = twin_runs(bench, thesis_conditions((13.0,)), Spoiling(), 4)
+    runs = twin_runs(bench, thesis_conditions(VOLTS), Corruption(), 3)
+    held_out = twin_runs(bench, thesis_conditions((13.0,)), Corruption(), 4)
     choice = chosen(bench.parameter_row)
     about = published_start(choice)
     found = identify(Task(bench, runs, choice, about, held_out, SearchSettings(generations=15), seed=2))
@@ -97,7 +97,7 @@ def test_three_stages_from_the_published_start_predict_held_out_data(bench):
 
 def test_a_search_that_ended_without_wet_friction_is_begun_again(bench):
     """Where mu_wet_7 F + mu_wet_4 is below 0 wet friction is 0, and nothing says which way out."""
-    runs = twin_runs(bench, thesis_conditions((14.0,)), Spoiling(), 3)
+    runs = twin_runs(bench, thesis_conditions((14.0,)), Corruption(), 3)
     choice = chosen(bench.parameter_row)
     ended = published_start(choice)
     for name, value in (("mu_wet_4", 0.3), ("mu_wet_7", -0.08), ("damping_n_m_s", 1e-4)):
@@ -110,19 +110,19 @@ def test_a_search_that_ended_without_wet_friction_is_begun_again(bench):
 
 def test_a_known_force_tells_more(bench):
     """With the force held, as from a spring balance, the settled dry coefficient is told."""
-    runs = twin_runs(bench, thesis_conditions(VOLTS), Spoiling(), 1)
+    runs = twin_runs(bench, thesis_conditions(VOLTS), Corruption(), 1)
     choice = chosen(bench.parameter_row, held=["force_n", "mu_dry_1", "mu_dry_2"])
     start = off_start(choice, 1, 0.2)
     solution = search(LeastSquares(runs, choice, bench.tables, expected_noise(runs), np.abs(start)), start)
     said = {each.name: each for each in verdicts(solution, spread(solution))}
-    assert said["mu_dry_3"].told
+    assert said["mu_dry_3"].identifiable
     assert said["mu_dry_3"].value == pytest.approx(1.996, rel=0.01)
 
 
 def test_a_recording_that_begins_in_motion_is_used_from_its_first_park_edge(bench):
     """Its speed there is looked for; the current that follows is the measured one."""
     clean = played(bench, TwinCondition(True, 0.0, (13.0,), turns=3))
-    data = spoilt(clean, CLEAN, 0.001, 0)
+    data = corrupted(clean, CLEAN, 0.001, 0)
     cut = 900
     moving = replace(
         data, time_s=data.time_s[cut:], voltage_v=data.voltage_v[cut:], current_a=data.current_a[cut:],
@@ -136,7 +136,7 @@ def test_a_recording_that_begins_in_motion_is_used_from_its_first_park_edge(benc
 
 def test_errors_of_park_edges_are_times(bench):
     """Against the instants at which the model passes the closing angle; each edge was moved by 4 ms, either way."""
-    data = spoilt(played(bench, TwinCondition(False, 0.0, (14.0,), turns=4)), CLEAN, 0.001, 0)
+    data = corrupted(played(bench, TwinCondition(False, 0.0, (14.0,), turns=4)), CLEAN, 0.001, 0)
     run = make_run(data, bench, 0.0)
     run = replace(run, edges=run.edges + np.array([4, -4, 4, -4]))
     (found,) = compare([run], bench.parameter_row, bench.tables)
@@ -149,7 +149,7 @@ def test_errors_of_park_edges_are_times(bench):
 
 def test_a_spike_of_the_voltmeter_does_not_drive_the_model(bench):
     """The motor did not see it: the model's current stays as it is without the spike."""
-    data = spoilt(played(bench, TwinCondition(False, 0.0, (14.0,))), CLEAN, 0.001, 0)
+    data = corrupted(played(bench, TwinCondition(False, 0.0, (14.0,))), CLEAN, 0.001, 0)
     spiky = data.voltage_v.copy()
     spiky[900] += 60.0
     rows, starts = bench.parameter_row[np.newaxis], np.zeros(1)
@@ -162,7 +162,7 @@ def test_a_spike_of_the_voltmeter_does_not_drive_the_model(bench):
 
 def test_a_dask_cluster_of_two_workers_gives_the_same_bits(bench):
     distributed = pytest.importorskip("distributed")
-    runs = twin_runs(bench, [TwinCondition(True, 1.0, (16.0,))], Spoiling(), 1)
+    runs = twin_runs(bench, [TwinCondition(True, 1.0, (16.0,))], Corruption(), 1)
     choice = chosen(bench.parameter_row)
     cost = cost_of(runs, choice, bench.tables)
     low, high = search_space(choice, choice.values)
@@ -181,7 +181,7 @@ SMALL = ["--generations", "6", "--population", "24", "--seed", "3", "--date", "2
 def files(bench, tmp_path_factory):
     folder = tmp_path_factory.mktemp("rig")
     for name, condition in zip(("slow", "fast"), thesis_conditions((11.0, 13.0, 16.0)), strict=True):
-        write_csv(folder / f"{name}.csv", spoilt(played(bench, condition), Spoiling(), 0.001, 11))
+        write_csv(folder / f"{name}.csv", corrupted(played(bench, condition), Corruption(), 0.001, 11))
     return folder
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from hilplant.bench import load_bench
 from hilplant.cli.main import main
-from hilplant.identify.twin import Spoiling, TwinCondition, recorded
+from hilplant.identify.twin import Corruption, TwinCondition, recorded
 
 HEADER = "time_s,voltage_v,current_a,park_contact,relay_fast"
 
@@ -16,7 +16,7 @@ HEADER = "time_s,voltage_v,current_a,park_contact,relay_fast"
 @pytest.fixture(scope="module")
 def table():
     """Two starts of the default bench at 12 and 16 V with 0.1 A of noise and 10 mA steps, as columns."""
-    data = recorded(load_bench("default"), TwinCondition(False, 0.0, (12.0, 16.0), 2), Spoiling(), 1)
+    data = recorded(load_bench("default"), TwinCondition(False, 0.0, (12.0, 16.0), 2), Corruption(), 1)
     return np.column_stack([data.time_s, data.voltage_v, data.current_a, data.park, data.fast])
 
 

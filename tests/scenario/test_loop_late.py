@@ -45,7 +45,7 @@ def test_after_a_stall_a_command_that_has_just_come_holds(rig: Rig) -> None:
 def test_a_backlog_of_more_than_a_tick_takes_drives_nothing_while_it_is_worked_off(rig: Rig) -> None:
     rig.tick(1000, command_every=50)
     rig.now += 5000
-    rig.transport.waited_ns.extend([(5000 - place) * STEP_NS for place in range(450)])
+    rig.transport.waited_ns.extend([(5000 - index) * STEP_NS for index in range(450)])
     rig.transport.arrived.extend([SLOW] * 450)
     for _ in range(100):
         rig.tick()

@@ -76,7 +76,7 @@ def test_it_stays_at_the_physical_plant_through_a_fault_and_afterwards(bench, na
     assert errors[5000:, SPEED].max() < 0.05
     turned = np.unwrap(ours[:, ANGLE]) - np.unwrap(true[:, ANGLE])
     assert np.abs(turned).max() < np.radians(1.0)
-    assert (ours[5000:, MODE] == NETWORK).all(), "in charge again"
+    assert (ours[5000:, MODE] == NETWORK).all(), "active again"
     if fault_s is not None:
         during = slice(*(round(1000 * second) for second in fault_s))
         assert (ours[during, MODE] == mode).all(), "flagged while it lasts"
@@ -123,7 +123,7 @@ def test_a_number_that_is_not_finite_stops_it_as_it_stops_the_physical_motor(ben
 
 
 def test_nothing_jumps_when_the_network_takes_over_or_hands_over(bench) -> None:
-    """At each change of who is in charge, the tick is that of the physical model to within the stated bound."""
+    """At each change of who is active, the tick is that of the physical model to within the stated bound."""
     signals = {"supply_v": [(0.1 * k, 13.5 if k % 2 else 20.0) for k in range(40)]}
     rows = inputs(bench, 4.0, **signals)
     true_row, our_row = (pack(bench[0]._replace(motor_model=model)) for model in (0.0, 1.0))

@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 OUTPUT = (
     (
         "signals.py",
-        '    load_mode: Annotated[float, choice(IN_CHARGE, "which model gives',
+        '    load_mode: Annotated[float, choice(ACTIVE_MODELS, "which model gives',
         '    armature_power_w: Annotated[float, real("W", -1e4, 1e4, "power that the armature takes")]\n',
     ),
     (

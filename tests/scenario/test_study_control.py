@@ -1,4 +1,4 @@
-"""`hilplant study control` as a whole: near the source's tables, the same order, and a controller that beats them."""
+"""`hilplant study control` as a whole: near the thesis' tables, the same order, and a controller that beats them."""
 
 import signal
 import subprocess

@@ -15,10 +15,10 @@ from hilplant.models.load import LOADS
 from hilplant.models.plant import simulate_rows
 from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX
 from hilplant.models.row import pack
-from hilplant.signals import IN_CHARGE, INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
+from hilplant.signals import ACTIVE_MODELS, INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 
 Floats = NDArray[np.float64]
-PHYSICAL, NETWORK, STANDSTILL, OUTSIDE = (IN_CHARGE.index(name) for name in IN_CHARGE)
+PHYSICAL, NETWORK, STANDSTILL, OUTSIDE = (ACTIVE_MODELS.index(name) for name in ACTIVE_MODELS)
 #: A disturbance lasts from 3 s to 4.5 s of 9 s.
 TICKS, BEGIN, END = 9000, 3000, 4500
 

@@ -10,11 +10,11 @@ from hilplant.bus.frame import Frame
 from hilplant.bus.transport import SendResult
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.server import build_loop
-from hilplant.signals import IN_CHARGE
+from hilplant.signals import ACTIVE_MODELS
 from hilplant.simulation.bus_run import ROUND_S, drive
 
 RELAY, ENVIRONMENT, LOSS_FAULTS, LINKAGE = 0x120, 0x122, 0x214, 0x202
-NETWORK, STANDSTILL, OUTSIDE = (IN_CHARGE.index(name) for name in ("network", "standstill", "outside"))
+NETWORK, STANDSTILL, OUTSIDE = (ACTIVE_MODELS.index(name) for name in ("network", "standstill", "outside"))
 STEP_NS = 1_000_000
 
 

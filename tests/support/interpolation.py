@@ -53,7 +53,7 @@ def read_rows(table: Floats, crank_rad: Floats) -> Floats:
     places = [find(table, angle) for angle in crank_rad]
     numbers = range(table.shape[1])
     return np.array(
-        [[(value(table, place, number), derivative(table, place, number)) for number in numbers] for place in places]
+        [[(value(table, index, number), derivative(table, index, number)) for number in numbers] for index in places]
     )
 
 

@@ -7,7 +7,7 @@ from hilplant.bench import check_bench, load_bench
 from hilplant.models.plant import simulate_rows
 from hilplant.models.records import STATE_INDEX, Parameters, Relays, RelayTiming, Wiring
 from hilplant.models.slow_records import Heat
-from hilplant.signals import IN_CHARGE, INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
+from hilplant.signals import ACTIVE_MODELS, INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 
 HEAD = "extends: default.yaml\nname: x\n"
 HEAT = "winding_j_k: 150, case_j_k: 450, winding_to_case_w_k: 0.6, case_to_ambient_w_k: 0.4"
@@ -53,7 +53,7 @@ def test_a_motor_network_that_was_trained_cold_does_not_move_a_motor_with_heat()
         inputs[:, INPUT_INDEX["relay_on"]], inputs[:, INPUT_INDEX["screen"]] = 1.0, 1.0
         outputs = np.empty((len(inputs), len(OUTPUTS)))
         simulate_rows(row, inputs, bench.parameter_row, bench.tables, outputs)
-        modes.append({IN_CHARGE[int(mode)] for mode in outputs[:, OUTPUT_INDEX["motor_mode"]]})
+        modes.append({ACTIVE_MODELS[int(mode)] for mode in outputs[:, OUTPUT_INDEX["motor_mode"]]})
     cold, warm = modes
     assert "network" in cold and "network" not in warm and "outside" in warm
 

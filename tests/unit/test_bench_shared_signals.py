@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hilplant.bench import check_bench, load_bench
-from hilplant.signals import ECU_SAID, ECU_SAID_INDEX
+from hilplant.signals import ECU_TX, ECU_TX_INDEX
 
 DATABASE = """VERSION ""
 NS_ :
@@ -60,13 +60,13 @@ def test_relays_follow_the_frame_and_the_simulated_ecu_sends_such_frames(
 ) -> None:
     made = load_bench(bench(tmp_path, message))
     (received,) = made.receive
-    order = [ECU_SAID[target].name for target in received.targets]
+    order = [ECU_TX[target].name for target in received.targets]
     decoded = {first: dict(zip(order, received.decode(bytes([first, *[0] * 7])), strict=True)) for first in relays}
     assert {first: (each["relay_on"], each["relay_fast"]) for first, each in decoded.items()} == relays
     (sent,) = made.ecu_side().send
     for on, fast in ((0, 0), (1, 0), (1, 1)):
-        values = [0.0] * len(ECU_SAID)
-        values[ECU_SAID_INDEX["relay_on"]], values[ECU_SAID_INDEX["relay_fast"]] = float(on), float(fast)
+        values = [0.0] * len(ECU_TX)
+        values[ECU_TX_INDEX["relay_on"]], values[ECU_TX_INDEX["relay_fast"]] = float(on), float(fast)
         payload, limited = sent.encode(values)
         assert limited == 0
         assert relays[payload[0]] == (on, fast)

@@ -9,7 +9,7 @@ from cantools.database.can.message import Message
 from cantools.database.can.signal import Signal
 from support import signal_table
 
-from hilplant.signals import ECU_FAULTS, ECU_STATES, IN_CHARGE, MODES, RECORDING, SCREENS, STALK_POSITIONS, STATUS
+from hilplant.signals import ACTIVE_MODELS, ECU_FAULTS, ECU_STATES, MODES, RECORDING, SCREENS, STALK_POSITIONS, STATUS
 
 ROOT = Path(__file__).parents[2]
 WIPER = Database(strict=True)
@@ -60,7 +60,7 @@ def test_value_tables_hold_the_plants_own_names() -> None:
     assert tables["Master_Input"] == dict(enumerate(STALK_POSITIONS))
     assert tables["EcuState"] == dict(enumerate(ECU_STATES))
     assert tables["EcuFault"] == dict(enumerate(ECU_FAULTS))
-    assert tables["LoadMode"] == tables["MotorMode"] == dict(enumerate(IN_CHARGE))
+    assert tables["LoadMode"] == tables["MotorMode"] == dict(enumerate(ACTIVE_MODELS))
     assert tables["Recording"] == dict(enumerate(RECORDING))
     from_plant = {"Mode", "Screen", "RelayOn", "RelayFast", "ParkContact", "Guard", "LoadMode", "MotorMode"}
     assert set(tables) == from_plant | {"Recording"} | {"Master_Input", "Flick_Wipe", "Wash", "EcuState", "EcuFault"}

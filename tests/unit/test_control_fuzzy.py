@@ -1,4 +1,4 @@
-"""The fuzzy system: what the source tells of its sets, and the table against a centroid taken here by itself."""
+"""The fuzzy system: what the thesis tells of its sets, and the table against a centroid taken here by itself."""
 
 import numpy as np
 import pytest

@@ -8,7 +8,7 @@ import pytest
 from hilplant.bench import check_bench, load_bench
 from hilplant.ecu.settings import controller_settings
 from hilplant.resources import shipped
-from hilplant.signals import ECU_HEARD, ECU_SAID_INDEX, ECU_STATES
+from hilplant.signals import ECU_RX, ECU_STATES, ECU_TX_INDEX
 
 DATABASE = cantools.database.load_file(shipped("dbc", "wiper.dbc"))
 
@@ -23,17 +23,17 @@ def test_the_shipped_stalk_is_read_as_cantools_writes_it() -> None:
     (stalk,) = load_bench().ecu_side().stalk
     written = {"Master_Input": "Fast", "Intermittent_Switch": 5, "Flick_Wipe": "Pressed", "Wash": "Released"}
     values = stalk.decode(DATABASE.encode_message("StalkCommand", written))
-    heard = {ECU_HEARD[target].name: value for target, value in zip(stalk.targets, values, strict=True)}
+    heard = {ECU_RX[target].name: value for target, value in zip(stalk.targets, values, strict=True)}
     assert heard == {"master_input": 3.0, "intermittent_switch": 5.0, "flick_wipe": 1.0, "wash": 0.0}
     assert stalk.timeout_ns == 0
 
 
 def test_the_shipped_status_is_written_as_cantools_reads_it() -> None:
     (status,) = load_bench().ecu_side().status
-    said = [0.0] * len(ECU_SAID_INDEX)
-    said[ECU_SAID_INDEX["ecu_state"]] = float(ECU_STATES.index("wash_wipes"))
-    said[ECU_SAID_INDEX["ecu_fault"]] = 3.0
-    said[ECU_SAID_INDEX["ecu_tries"]] = 300.0
+    said = [0.0] * len(ECU_TX_INDEX)
+    said[ECU_TX_INDEX["ecu_state"]] = float(ECU_STATES.index("wash_wipes"))
+    said[ECU_TX_INDEX["ecu_fault"]] = 3.0
+    said[ECU_TX_INDEX["ecu_tries"]] = 300.0
     data, _ = status.encode(said)
     shown = {name: str(value) for name, value in DATABASE.decode_message("EcuStatus", data).items()}
     assert shown == {"EcuState": "Wash_Wipes", "EcuFault": "Park_Never_Opens", "EcuTries": "255"}

@@ -14,7 +14,7 @@ from hilplant.ecu.chart import Phase
 from hilplant.ecu.node import EcuNode, EcuReport, run_ecu
 from hilplant.ecu.vocabulary import Fault, Master, RelaySettings, Stalk
 from hilplant.runtime.clock import VirtualClock
-from hilplant.signals import ECU_FAULTS, ECU_HEARD, ECU_SAID, ECU_STATES
+from hilplant.signals import ECU_FAULTS, ECU_RX, ECU_STATES, ECU_TX
 from hilplant.units import MILLISECOND_NS
 
 STATES, FAULTS = (" ".join(f'{i} "{name}"' for i, name in enumerate(names)) for names in (ECU_STATES, ECU_FAULTS))
@@ -55,13 +55,13 @@ OFF, SLOW, FAST = Stalk(), Stalk(Master.SLOW), Stalk(Master.FAST)
 
 def received(name: str, timeout_ns: int = TIMEOUT_NS, **signals: SignalMapping | str) -> ReceivedMessage:
     mapping = [at if isinstance(at, SignalMapping) else SignalMapping(signal, at) for signal, at in signals.items()]
-    return received_message(DATABASE.get_message_by_name(name), mapping, ECU_HEARD, timeout_ns)
+    return received_message(DATABASE.get_message_by_name(name), mapping, ECU_RX, timeout_ns)
 
 
 def sent(name: str, **plant_signals: str) -> SentMessage:
     mapping = [SignalMapping(signal, plant_signal) for signal, plant_signal in plant_signals.items()]
     timing = Timing(on_change=tuple(plant_signals.values()))
-    return sent_message(DATABASE.get_message_by_name(name), mapping, ECU_SAID, timing)
+    return sent_message(DATABASE.get_message_by_name(name), mapping, ECU_TX, timing)
 
 
 def side(stalk_timeout_ns: int = 0) -> EcuSide:

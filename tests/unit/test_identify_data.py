@@ -34,7 +34,7 @@ def rig(sample_hz: float = 1000.0, stages: tuple[tuple[float, float], ...] = STA
         turned += inner * speed / N
     stride = round(1.0 / (sample_hz * inner))
     names = ("time", "U1", "I1", "PS")
-    return {name: rows[::stride, place].copy() for place, name in enumerate(names)}
+    return {name: rows[::stride, index].copy() for index, name in enumerate(names)}
 
 
 def channels(seed: int = 1, sample_hz: float = 1000.0, **changes: np.ndarray) -> dict[str, Channel]:

@@ -15,7 +15,7 @@ from hilplant.measurements.frames import FrameSource
 from hilplant.measurements.measurement import Measurement
 from hilplant.measurements.preparation import Preparation, read_measurement
 from hilplant.recording.tables import write_table
-from hilplant.signals import ECU_SAID, PUBLISHED
+from hilplant.signals import ECU_TX, PUBLISHED
 
 COUNT = 3000
 TIME_S = np.arange(COUNT) * 1e-3
@@ -176,8 +176,8 @@ def test_frames_through_the_mapping_of_a_bench(tmp_path: Path) -> None:
             values = [0.0] * len(PUBLISHED)
             for name, column in (("terminal_v", VOLTS), ("current_a", AMPERES), ("park_contact", PARK)):
                 values[places[name]] = float(column[tick])
-            said = [0.0] * len(ECU_SAID)
-            said[[signal.name for signal in ECU_SAID].index("relay_fast")] = float(tick >= 1500)
+            said = [0.0] * len(ECU_TX)
+            said[[signal.name for signal in ECU_TX].index("relay_fast")] = float(tick >= 1500)
             for message, row in [(m, values) for m in bench.send if m.name in ("MotorStatus", "ParkSwitch")] + [
                 (command, said)
             ]:

@@ -120,8 +120,8 @@ def relative(lines: list[Row]) -> list[str]:
 
 def swapped(lines: list[Row]) -> list[str]:
     texts = [line(*row) for row in lines]
-    for place in range(50, len(texts) - 1, 37):
-        texts[place], texts[place + 1] = texts[place + 1], texts[place]
+    for index in range(50, len(texts) - 1, 37):
+        texts[index], texts[index + 1] = texts[index + 1], texts[index]
     return texts
 
 

@@ -66,7 +66,7 @@ def test_a_crank_shortened_as_the_refusal_asks_is_accepted_and_one_a_little_long
         with pytest.raises(GeometryError, match=r"the crank OA"):
             check_crank(longer)
         tried += 1
-    print(f"\n{tried} random crank loops mended as their refusal says")
+    print(f"\n{tried} random crank loops fixed as their refusal says")
     assert tried > 20
 
 
@@ -91,9 +91,9 @@ def test_a_link_made_as_long_as_the_refusal_asks_is_accepted() -> None:
                 assert first and math.dist(points["E"], points["F"]) <= float(first.group(1)) * 1.001
                 continue
             low, high = map(float, found.groups())
-            mended = moved(points, "E", "DF", ((low + high) / 2.0, math.dist(points["E"], points["F"])))
-            assert mended is not None
-            check_reach(mended, "CDEF", reached)
+            fixed = moved(points, "E", "DF", ((low + high) / 2.0, math.dist(points["E"], points["F"])))
+            assert fixed is not None
+            check_reach(fixed, "CDEF", reached)
             tried += 1
 
 
@@ -102,9 +102,9 @@ def bent_to(points: Placed, from_line_deg: float) -> Placed:
     farthest, rocker = reach(points, "OABC", "CDEF")[1], math.dist(points["E"], points["F"])
     angle = math.pi - math.radians(from_line_deg)
     link = rocker * math.cos(angle) + math.sqrt(farthest**2 - (rocker * math.sin(angle)) ** 2)
-    mended = moved(points, "E", "DF", (link, rocker))
-    assert mended is not None
-    return mended
+    fixed = moved(points, "E", "DF", (link, rocker))
+    assert fixed is not None
+    return fixed
 
 
 @pytest.mark.parametrize("from_line_deg", [0.5, 3.0, 19.9])

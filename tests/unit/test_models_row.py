@@ -40,13 +40,13 @@ def changed_in_compiled_code(row: Any, kept: Any) -> None:
 def test_compiled_code_and_python_agree_on_every_element(record: type[Any]) -> None:
     signals, in_python = declared(record), all_of(record)
     in_compiled_code = compiled(in_python)
-    for place in range(len(signals)):
+    for index in range(len(signals)):
         for wrong in (1.5, math.nan, -math.inf):
             row = np.arange(1.0, len(signals) + 1.0)
-            row[place] = wrong
+            row[index] = wrong
             kept, safe = np.empty((2, 2, len(row)))
             answers = in_compiled_code(row, kept[0], safe[0]), in_python(row, kept[1], safe[1])
-            assert answers[0] == answers[1] == (math.isfinite(wrong) or not signals[place].watched)
+            assert answers[0] == answers[1] == (math.isfinite(wrong) or not signals[index].watched)
             assert kept[0].tobytes() == kept[1].tobytes() == row.tobytes()
             assert safe[0].tobytes() == safe[1].tobytes() and np.isfinite(safe).all()
             fixed = [row[k] if signal.guarded is None else signal.guarded for k, signal in enumerate(signals)]

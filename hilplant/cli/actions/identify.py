@@ -47,10 +47,10 @@ def _print_parameters(found: Identified) -> None:
     typer.echo(f"{'parameter':24}{'before':>12}{'found':>12}   95 % interval")
     withheld = bool(unexplained(found.fitted))
     for verdict, interval, before in rows:
-        text = "not told by these data"
-        if verdict.told and withheld:
+        text = "not identifiable"
+        if verdict.identifiable and withheld:
             text = "withheld: the model does not fit"
-        elif verdict.told:
+        elif verdict.identifiable:
             text = " to ".join("open" if side is None else f"{side:.5g}" for side in interval)
         elif verdict.together:
             text += f", not apart from {', '.join(verdict.together)}"

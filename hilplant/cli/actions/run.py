@@ -73,7 +73,7 @@ def _prepare(seat: "LoopSeat | OwnLoopSeat | None", loop: Loop) -> None:
 
 def _say_start(bench: Bench, voice: Voice, privileges: list[Privilege]) -> None:
     interface = " ".join(str(value) for value in bench.interface.values())
-    missing = [f"  without {p.name}: {p.mend}" for p in privileges if not p.granted]
+    missing = [f"  without {p.name}: {p.fix}" for p in privileges if not p.granted]
     step_ms = bench.step_ns / MILLISECOND_NS
     voice.say(f"{bench.name} serves on {interface}, a tick every {step_ms:g} ms; Ctrl-C ends it")
     if bench.interface.get("interface") == "virtual":

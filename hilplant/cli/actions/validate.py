@@ -20,7 +20,7 @@ def validate_files(
     bench = load_bench(bench_name)
     runs = [make_run(named.data, bench, named.screen) for named in read_named(texts, *reading)]
     good, figures = True, dict[str, Any]()
-    for place, compared in enumerate(compare(runs, bench.parameter_row, bench.tables), 1):
+    for index, compared in enumerate(compare(runs, bench.parameter_row, bench.tables), 1):
         error = compared.error
         typer.echo(
             f"{error.name}: current {error.rms_current_a:.4g} A rms, {error.worst_current_a:.4g} A at worst "
@@ -32,5 +32,5 @@ def validate_files(
             if bound is not None and value > bound:
                 good = False
                 typer.echo(f"{error.name}: {name}: {value:.4g} {unit} rms is above {bound:g} {unit}", err=True)
-        figures |= {f"recording_{place}_{key}": value for key, value in error._asdict().items()}
+        figures |= {f"recording_{index}_{key}": value for key, value in error._asdict().items()}
     return good, figures

@@ -19,7 +19,7 @@ def control(  # noqa: PLR0913, PLR0917
     channel: Channel = None,
     budget_us: Budget = None,
 ) -> None:
-    """Be a velocity controller, a CAN node of its own.
+    """Run a velocity controller, a CAN node of its own.
 
     It commands the supply voltage and both relays, and ticks with the plant's speed message. With _sensorless behind
     its name, as in pid_sensorless, a controller uses voltage, current and park switch only. docs/control.md shows

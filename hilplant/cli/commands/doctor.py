@@ -15,7 +15,7 @@ app = command_app()
 def doctor(json_file: JsonFile = None) -> None:
     """Say what helps or hinders real time and CAN here.
 
-    With the command that mends it.
+    With the command that fixes it.
     """
     from hilplant.cli.actions.doctor import print_findings
     from hilplant.doctor import examine

@@ -18,7 +18,7 @@ def ecu(
     channel: Channel = None,
     chart: Annotated[bool, typer.Option("--chart", help="print the controller's states as a Mermaid diagram")] = False,
 ) -> None:
-    """Be the stand-in relay ECU, a CAN node of its own.
+    """Simulate the body ECU, a CAN node of its own.
 
     The stalk has off, intermittent (1 to 6), slow, fast, flick and wash; off parks. It is what --stalk says, else what
     the bench's stalk message says once one has come, else what is typed.

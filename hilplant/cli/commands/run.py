@@ -62,6 +62,6 @@ def run(  # noqa: PLR0913, PLR0917
     claim(json_file)
     inside = None if controller is None else Inside(controller, reference or "3.14", budget_us)
     summary = run_daemon(bench, seconds, to, channel, inside, not no_channel)
-    missing = " | ".join(f"{given.name}: {given.mend}" for given in summary.privileges if not given.granted)
+    missing = " | ".join(f"{given.name}: {given.fix}" for given in summary.privileges if not given.granted)
     write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))
     raise typer.Exit(0 if summary.is_sound else 1)

@@ -30,7 +30,7 @@ def validate(  # noqa: PLR0913, PLR0917
     frames: Frames = None,
     json_file: JsonFile = None,
 ) -> None:
-    """Hold a bench against recordings.
+    """Validate a bench against recordings.
 
     Errors of current and park edges. Exit code 1 when one is above a bound that was given.
     """

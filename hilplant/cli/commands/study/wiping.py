@@ -8,11 +8,11 @@ app = command_app()
 
 
 @app.command(
-    short_help="Tell cycles a minute and currents, 9 to 16 V.",
+    short_help="Report the wipe rate and currents, 9 to 16 V.",
     epilog="Example: hilplant study wiping default",
 )
 def wiping(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
-    """Tell cycles a minute and currents from 9 to 16 V, dry and wet.
+    """Report the wipe rate and currents from 9 to 16 V, dry and wet.
 
     With the three figures of FMVSS 104 beside them.
     """
