@@ -1,0 +1,1 @@
+"""The library of section 8.2: what is shipped, by kind, with source and status."""
