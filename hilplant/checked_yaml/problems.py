@@ -1,7 +1,7 @@
 """What is wrong with a file that a user wrote, and where."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Literal
 
@@ -16,12 +16,13 @@ _MOST_KNOWN = 30
 
 @dataclass(frozen=True, order=True, slots=True)
 class Problem:
-    """One mistake: the file and line it is in, and what would be right."""
+    """One mistake: the file and line it is in, and what would be right; `location` are the keys that lead there."""
 
     file: str
     line: int
     text: str
     severity: Severity = "error"
+    location: tuple[str | int, ...] = field(default=(), compare=False)
 
     def __str__(self) -> str:
         """Return the line that the user sees; what would steer a terminal is escaped."""

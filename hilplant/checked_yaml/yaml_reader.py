@@ -51,7 +51,7 @@ class Document:
     def problem(self, location: Sequence[str | int], text: str, severity: Severity = "error") -> Problem:
         """Return a problem at the line of `location`."""
         file, line = self.place(location)
-        return Problem(file, line, text, severity)
+        return Problem(file, line, text, severity, tuple(location))
 
     def existing(self, location: Sequence[str | int]) -> Location:
         """Drop from a location what the files do not hold, such as the names of the choices of a union."""
