@@ -30,6 +30,8 @@ def main(arguments: list[str]) -> int:
         prepare(testing)
         if testing and not shutil.which("gcc"):
             install_package("gcc, which compiles what the step is compared with,", "gcc", "libc6-dev")
+        if testing and not shutil.which("chromium"):
+            install_package("chromium, in which the pages are tested,", "chromium")
     except SetUpError as error:
         return complain(str(error))
     os.environ["PATH"] = f"{PYTHON.parent}{os.pathsep}{os.environ.get('PATH', '')}"
@@ -93,20 +95,24 @@ def run_quietly(command: list[str]) -> None:
 
 
 def run_all_tests(arguments: list[str]) -> int:
-    """Run linter, type checker, the tests that need no CAN, then those on a real vcan0; say how each went."""
+    """Run linter, type checker, the tests that need nothing, those in a browser and on vcan0; say how each went."""
     pytest = ["-m", "pytest", *arguments]
     results = {
         "ruff check": step("ruff check", ["-m", "ruff", "check", "."]),
         "ruff format": step("ruff format", ["-m", "ruff", "format", "--check", "."]),
         "mypy": step("mypy", ["-m", "mypy", "hilplant", "start.py"]),
-        "tests": step("tests", [*pytest, "-m", "not vcan"]),
+        "tests": step("tests", [*pytest, "-m", "not vcan and not browser"]),
     }
-    with tempfile.TemporaryDirectory(prefix="hilplant-test-") as folder:
-        report = Path(folder) / "vcan.xml"
-        on_vcan = ["-m", "hilplant.vcan.private_vcan", str(PYTHON), *pytest, "-m", "vcan", f"--junitxml={report}"]
-        passed = step("tests on SocketCAN", [*on_vcan, "tests/vcan"])
-        ran, skipped = count(report)
-    results[f"tests on SocketCAN ({ran} run, {skipped} skipped)"] = passed and ran > 0 and skipped == 0
+    private_vcan = ["-m", "hilplant.vcan.private_vcan", str(PYTHON)]
+    for name, command in (
+        ("tests in a browser", [*pytest, "-m", "browser", "tests/web"]),
+        ("tests on SocketCAN", [*private_vcan, *pytest, "-m", "vcan", "tests/vcan"]),
+    ):
+        with tempfile.TemporaryDirectory(prefix="hilplant-test-") as folder:
+            report = Path(folder) / "report.xml"
+            passed = step(name, [*command, f"--junitxml={report}"])
+            ran, skipped = count(report)
+        results[f"{name} ({ran} run, {skipped} skipped)"] = passed and ran > 0 and skipped == 0
     print("\n" + "\n".join(f"{'passed' if good else 'FAILED'}  {name}" for name, good in results.items()))
     return 0 if all(results.values()) else 1
 

@@ -23,6 +23,7 @@ EXTRAS = {
     "testing": Extra("tests of an ECU", ("jinja2", "matplotlib", "pyarrow")),
     "train": Extra("trained models and their reports", ("matplotlib", "threadpoolctl")),
     "udp": Extra("CAN frames by UDP multicast", ("msgpack",)),
+    "web": Extra("pages in a browser", ("starlette", "uvicorn", "websockets")),
 }
 
 

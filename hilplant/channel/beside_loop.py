@@ -1,11 +1,7 @@
 """The door beside a loop: its process, and the file that says where it is, for as long as the loop runs."""
 
 import contextlib
-import json
 import os
-import select
-import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -13,11 +9,9 @@ from typing import Any
 
 from hilplant.bench import Bench
 from hilplant.channel.run_files import RunFile, run_folder
+from hilplant.companion import companion
 from hilplant.extras import missing
-from hilplant.failure import Failure
 from hilplant.runtime.ring import Ring
-
-_START_TIMEOUT_S = 30.0
 
 
 @contextmanager
@@ -43,32 +37,9 @@ def announced(bench: Bench, ring: Ring, channel: bool = True) -> Iterator[RunFil
 @contextmanager
 def _door(bench: Bench, run: RunFile) -> Iterator[None]:
     order = {**asdict(run), "metadata": _metadata(bench), "loop_cpu": bench.loop.cpu}
-    child = subprocess.Popen(
-        [sys.executable, "-m", "hilplant.channel.door"],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        start_new_session=True,
-    )
-    if child.stdin is None or child.stdout is None:
-        raise AssertionError("the door is always started with pipes")
-    try:
-        with contextlib.suppress(BrokenPipeError):
-            child.stdin.write(json.dumps(order).encode() + b"\n")
-            child.stdin.flush()
-        ready, _, _ = select.select([child.stdout], [], [], _START_TIMEOUT_S)
-        answer = child.stdout.readline().decode().strip() if ready else ""
-        if answer != "ready":
-            raise Failure(answer or "the channel's process did not start; without it: --no-channel")
+    otherwise = "the channel's process did not start; without it: --no-channel"
+    with companion("hilplant.channel.door", order, otherwise):
         yield
-    finally:
-        with contextlib.suppress(OSError):
-            child.stdin.close()
-        try:
-            child.wait(_START_TIMEOUT_S)
-        except subprocess.TimeoutExpired:
-            child.kill()
-            child.wait()
-        child.stdout.close()
 
 
 def _metadata(bench: Bench) -> dict[str, Any] | None:

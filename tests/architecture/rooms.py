@@ -21,9 +21,9 @@ PAGE = ROOT / "docs" / "architecture.md"
 
 #: From the bottom to the top: an arrow points to a room of the same layer or of a lower one.
 LAYERS: dict[str, str] = {
-    "ground": "units failure arrays jit progress atomic_write resources extras declaration signals vcan",
+    "ground": "units failure arrays jit progress atomic_write resources extras declaration signals vcan companion",
     "physics": "models mechanics control",
-    "borders": "checked_yaml bus verdicts faults",
+    "borders": "checked_yaml bus verdicts faults web",
     "bench": "bench",
     "server": "runtime ecu recording channel",
     "offline": "library c_source simulation measurements motor_bench identify train",
@@ -46,6 +46,8 @@ ARROWS: dict[str, str] = {
     "atomic_write": "failure",
     "resources": "failure",
     "extras": "failure",
+    "companion": "failure",
+    "web": "failure extras companion",
     "signals": "units declaration",
     "models": "units declaration signals arrays jit",
     "mechanics": "units declaration signals arrays failure models",
@@ -58,7 +60,7 @@ ARROWS: dict[str, str] = {
     "runtime": "units declaration signals arrays failure jit models control bus",
     "ecu": f"{_PHYSICS} checked_yaml bus bench runtime",
     "recording": "units declaration signals arrays failure extras atomic_write jit models bus runtime",
-    "channel": "units declaration signals failure extras checked_yaml models control bench runtime recording",
+    "channel": "units declaration signals failure extras companion checked_yaml models control bench runtime recording",
     "library": _OFFLINE,
     "c_source": _OFFLINE,
     "simulation": _OFFLINE,

@@ -1,0 +1,1 @@
+"""What the pages in a browser share: a local server with a token, its limits, and the look."""
