@@ -50,6 +50,39 @@ def drawable(path: Path) -> Path:
 Picture = Annotated[Path, typer.Argument(help=f"picture to write: {', '.join(PICTURES)}", callback=drawable)]
 
 
+def tabular(path: Path | None) -> Path | None:
+    """Refuse a table that cannot be written, before any work is done for it."""
+    if path is not None:
+        from hilplant.recording.tables import check_ending
+
+        check_ending(path)
+        claim(path)
+    return path
+
+
+Table = Annotated[
+    Path | None, typer.Option("--table", help="write the numbers too: .csv, .parquet or .mf4", callback=tabular)
+]
+TurnsAMinute = Annotated[float, typer.Option("--turns", min=0.1, max=300.0, help="of the crank, a minute")]
+
+
+def write_drawn(path: Path | None, columns: dict[str, Any]) -> None:
+    """Write the numbers of a picture, if a file was asked for."""
+    if path is not None:
+        from hilplant.recording.tables import write_table
+
+        write_table(path, columns, {})
+        typer.echo(f"{path} written")
+
+
+def numbers_of(option: str, text: str) -> tuple[float, ...]:
+    """Return numbers with commas between, as an option takes them."""
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise Failure(f"{option}: numbers with commas between are wanted, not '{text}'") from None
+
+
 def flat(record: dict[str, Any]) -> dict[str, Any]:
     """Lift nested figures to the top, as `outer_inner`."""
     flat: dict[str, Any] = {}

@@ -17,6 +17,15 @@ def figure_with(size: tuple[float, float], rows: int = 1, columns: int = 1, **pa
     return figure, figure.subplots(rows, columns, **panels)
 
 
+def plain_figure(size: tuple[float, float], rows: int = 1, columns: int = 1, **panels: Any) -> tuple[Any, Any]:
+    """Return the same with a light grid and no frame on top and right of each panel."""
+    figure, made = figure_with(size, rows, columns, squeeze=False, **panels)
+    for axes in made.ravel():
+        axes.grid(alpha=0.25)
+        axes.spines[["top", "right"]].set_visible(False)
+    return figure, made if columns > 1 else made[:, 0]
+
+
 def save(figure: Any, path: str | PathLike[str], dpi: int) -> None:
     """Write a figure.
 

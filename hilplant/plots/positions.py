@@ -14,6 +14,7 @@ from hilplant.units import RAD_PER_DEG, TURN_RAD
 
 #: Crank angles that are drawn when none are asked for [deg].
 FOUR_DEG = (0.0, 60.0, 120.0, 180.0)
+MOST_POSITIONS = 16
 _CM = 100.0
 _SWEEP_STEPS = 181
 _BLUE, _ORANGE, _GREY, _BLACK, _RED = "#0b5cad", "#d9730d", "#6b7280", "#1f2937", "#b3261e"
@@ -22,25 +23,30 @@ _BLUE, _ORANGE, _GREY, _BLACK, _RED = "#0b5cad", "#d9730d", "#6b7280", "#1f2937"
 def plot_positions(
     wiper: Wiper, out_png: str | PathLike[str], title: str, crank_deg: tuple[float, ...] = FOUR_DEG
 ) -> None:
-    """Draw the wiper at four crank angles [deg] into a picture, 0 being park.
+    """Draw the wiper at some crank angles [deg] into a picture, 0 being park, 180 and more the way back.
 
     The tinted areas are what the blades sweep in a turn, the dotted lines the ways of the blades' joints.
 
     Raises
     ------
     Failure
-        For another number of angles than four, or when the picture cannot be written.
+        For no angles, for more than 16, or when the picture cannot be written.
     """
-    if len(crank_deg) != 4:
-        raise Failure(f"four positions are drawn, not {len(crank_deg)}")
+    if not 1 <= len(crank_deg) <= MOST_POSITIONS:
+        raise Failure(f"1 to {MOST_POSITIONS} positions are drawn, not {len(crank_deg)}")
     turn = motion(wiper, np.linspace(0.0, TURN_RAD, _SWEEP_STEPS))
     moving = motion(wiper, np.array(crank_deg) * RAD_PER_DEG)
-    figure, panels = figure_with((12, 8.6), 2, 2, sharex=True, sharey=True)
-    for index, axes in enumerate(panels.ravel()):
+    columns = min(len(crank_deg), 2 if len(crank_deg) <= 4 else 4)
+    rows = -(-len(crank_deg) // columns)
+    size = (6.0 * columns, 4.0 * rows + 0.6) if columns < 3 else (4.0 * columns, 2.9 * rows + 0.6)
+    figure, panels = figure_with(size, rows, columns, sharex=True, sharey=True, squeeze=False)
+    for axes in panels.ravel()[len(crank_deg) :]:
+        axes.set_visible(False)
+    for index, axes in enumerate(panels.ravel()[: len(crank_deg)]):
         _area(axes, wiper, turn)
         _wiper(axes, wiper, moving.coordinates[index])
         axes.set_title(f"crank {crank_deg[index]:g}°{_arm_angles(wiper, moving, index)}", fontsize=10)
-    for axes in panels[1]:
+    for axes in panels[-1]:
         axes.set_xlabel("x [cm]")
     for axes in panels[:, 0]:
         axes.set_ylabel("y [cm]")

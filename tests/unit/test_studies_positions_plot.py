@@ -54,9 +54,18 @@ def test_both_arms_and_the_crank_are_in_every_panel_and_the_arms_rise(wiper: Wip
     assert up[2] > up[3]
 
 
-def test_only_four_positions_are_drawn(wiper: Wiper, tmp_path: Path) -> None:
-    with pytest.raises(Failure, match="four positions are drawn, not 2"):
-        plot_positions(wiper, tmp_path / "two.png", "two", (0.0, 90.0))
+@pytest.mark.parametrize("count", [1, 2, 3, 5, 16])
+def test_any_number_of_positions_is_drawn_each_with_its_angle(wiper: Wiper, tmp_path: Path, count: int) -> None:
+    angles = tuple(np.linspace(10.0, 350.0, count).tolist())
+    plot_positions(wiper, tmp_path / "some.svg", "some", angles)
+    text = (tmp_path / "some.svg").read_text()
+    assert all(f"crank {angle:g}°" in text for angle in angles)
+
+
+@pytest.mark.parametrize("angles", [(), tuple(range(17))])
+def test_no_position_and_too_many_are_refused(wiper: Wiper, tmp_path: Path, angles: tuple[float, ...]) -> None:
+    with pytest.raises(Failure, match=f"1 to 16 positions are drawn, not {len(angles)}"):
+        plot_positions(wiper, tmp_path / "none.png", "none", angles)
 
 
 def test_a_picture_that_cannot_be_written_says_so(wiper: Wiper, tmp_path: Path) -> None:
