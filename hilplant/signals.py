@@ -155,6 +155,10 @@ class Status(NamedTuple):
     e2e_not_valid: Annotated[
         float, count("protected frames that were good while AUTOSAR's state machine was not valid, or not yet")
     ]
+    faults_active: Annotated[float, real("", 0.0, 255.0, "how many inserted faults are there now")]
+    fault_shown: Annotated[
+        float, real("", 0.0, 255.0, "number of a fault that is there, each in turn for 100 ms; 0 while there is none")
+    ]
 
 
 class StalkInputs(NamedTuple):

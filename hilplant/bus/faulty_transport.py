@@ -101,6 +101,11 @@ class FaultyTransport:
         for fault in faults:
             (self._out if fault.outgoing else self._in).faults.append(fault)
 
+    def remove(self, faults: Sequence[PlacedFault]) -> None:
+        """Take faults out; frames that they have held back pass in their time."""
+        for fault in faults:
+            (self._out if fault.outgoing else self._in).faults.remove(fault)
+
     def begin(self, now_ns: int) -> None:
         """Go on to the next tick; the faults are those of this tick."""
         self._now_ns = now_ns

@@ -48,6 +48,11 @@ class FrameFault:
         self._last: Frame | None = None
         self._present = False
 
+    @property
+    def spent(self) -> bool:
+        """Whether nothing is left to be done once it is over."""
+        return True
+
     def passing(self, frame: Frame, now_ns: int, present: bool) -> Passing:
         """Return what becomes of a frame that it is about."""
         begins, self._present = present and not self._present, present
@@ -123,6 +128,11 @@ class Reordered(FrameFault):
     """Let two frames change places, again and again."""
 
     _held: Frame | None = None
+
+    @property
+    def spent(self) -> bool:
+        """Whether it holds no frame back."""
+        return self._held is None
 
     def _change(self, frame: Frame, now_ns: int) -> Passing:
         held, self._held = self._held, None
@@ -237,6 +247,11 @@ class Restarted(Silent):
 
     _silenced = False
     _offset: int | None = None
+
+    @property
+    def spent(self) -> bool:
+        """Whether it has never been there: the counter stays another one for good."""
+        return not self._silenced
 
     def _begin(self, frame: Frame) -> None:
         self._silenced, self._offset = True, None

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from hilplant.channel.requests import LEASE_S
 from hilplant.channel.run_files import RunFile, column_of, columns, run_named
 from hilplant.failure import Failure
+from hilplant.faults.written import entry_named
 from hilplant.runtime.follower import Follower
 
 _ALIVE_EVERY_S = LEASE_S / 4
@@ -38,7 +39,7 @@ def connect(name: str | None = None) -> "RunChannel":
 class RunChannel:
     """A channel into a running loop. Each command returns the tick at which it was applied.
 
-    What it holds by :meth:`override` is released when it is closed, and 1 s after it was killed.
+    What it holds by :meth:`override` and :meth:`fault` is released when it is closed, and 1 s after it was killed.
     """
 
     def __init__(self, run: RunFile) -> None:
@@ -54,6 +55,7 @@ class RunChannel:
         self._sending, self._asking = threading.Lock(), threading.Lock()
         self._number, self._closed = 0, threading.Event()
         self._held: set[str] = set()
+        self._leased = False  # whether faults may be held
         #: What the run has told without being asked, such as inputs that were released.
         self.events: list[dict[str, Any]] = []
         self._follower = Follower(run.ring)
@@ -82,6 +84,21 @@ class RunChannel:
         """Change an element of the plant's parameters, or several in one tick, such as ``wiring.altered``."""
         return self._tick("parameter", values=_values(name, value))
 
+    def fault(self, name: str, /, lease_s: float = LEASE_S, **keys: Any) -> int:
+        """Insert a fault until it is cleared; the keys are its quantities and those of a scenario's `faults`.
+
+        ``fault("resistance_53", resistance_ohm=0.5, for_=2.0)``; `for_` stands for `for`, and `at` counts from now. The
+        same fault about the same message takes the place of the one before. `hilplant faults` lists all.
+        """
+        entry = entry_named(name, keys)
+        tick = self._tick("fault", lease_s=lease_s, **entry.model_dump(by_alias=True, exclude_defaults=True))
+        self._leased = True
+        return tick
+
+    def clear(self, *names: str) -> int:
+        """End the faults of these names that this client has inserted; all of them when none is named."""
+        return self._tick("clear", names=list(names))
+
     def reference(self, value: float) -> int:
         """Give the controller inside the loop another wanted speed of the crank [rad/s]."""
         return self._tick("reference", value=value)
@@ -99,7 +116,7 @@ class RunChannel:
         return self._tick("record_stop")
 
     def status(self) -> dict[str, Any]:
-        """Return tick, counts, and who commands each input."""
+        """Return tick, counts, who commands each input, and the faults that are there."""
         return self.ask("status")
 
     def latest(self) -> dict[str, float]:
@@ -141,6 +158,8 @@ class RunChannel:
         with contextlib.suppress(Failure):
             if self._held:
                 self.release()
+            if self._leased:
+                self.clear()
         self._closed.set()
         self._lines.close()
         self._socket.close()
@@ -179,7 +198,7 @@ class RunChannel:
     def _live(self) -> None:
         """Say that this client lives, for its leases."""
         while not self._closed.wait(_ALIVE_EVERY_S):
-            if self._held:
+            if self._held or self._leased:
                 try:
                     self._send({"do": "alive"})
                 except Failure:

@@ -8,6 +8,8 @@ from typing import Any
 from hilplant.bench.values import input_index, signal_value
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.control.reference import FASTEST_RAD_S
+from hilplant.failure import Failure
+from hilplant.faults.written import entry_from
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.runtime import commands as c
 from hilplant.runtime.commands import ChannelCommand
@@ -69,10 +71,14 @@ def _set(request: dict[str, Any]) -> list[ChannelCommand]:
 
 
 def _override(request: dict[str, Any]) -> list[ChannelCommand]:
-    lease_s = request.get("lease_s", LEASE_S)
+    return _inputs(request, kind=c.OVERRIDE, lease_ns=_lease_ns(request))
+
+
+def _lease_ns(request: dict[str, Any]) -> int:
+    lease_s: Any = request.get("lease_s", LEASE_S)
     if not _is_number(lease_s) or not SHORTEST_LEASE_S <= lease_s <= LONGEST_LEASE_S:
         raise ValueError(f"lease_s is a time from {SHORTEST_LEASE_S:g} to {LONGEST_LEASE_S:g} s, not {lease_s!r}")
-    return _inputs(request, kind=c.OVERRIDE, lease_ns=round(lease_s * SECOND_NS))
+    return round(float(lease_s) * SECOND_NS)
 
 
 def _release(request: dict[str, Any]) -> list[ChannelCommand]:
@@ -104,12 +110,29 @@ def _mark(request: dict[str, Any]) -> list[ChannelCommand]:
     text = request.get("text")
     if not isinstance(text, str) or not text:
         raise ValueError('mark: "text" says what is marked')
-    return [ChannelCommand(kind=c.MARK, text=shortened(text))]
+    return [ChannelCommand(kind=c.MARK, text=c.shortened(text))]
 
 
-def shortened(text: str) -> bytes:
-    """Return a text as UTF-8 that fits into a command, cut between two letters."""
-    return text.encode(errors="replace")[: c.TEXT_BYTES].decode(errors="ignore").encode()
+_FAULT_KEYS = ("id", "do", "lease_s")
+
+
+def _fault(request: dict[str, Any]) -> list[ChannelCommand]:
+    written = {key: value for key, value in request.items() if key not in _FAULT_KEYS}
+    text = json.dumps(written, separators=(",", ":"), ensure_ascii=False).encode(errors="replace")
+    try:
+        entry_from(text)
+    except Failure as failure:
+        raise ValueError(str(failure)) from failure
+    if len(text) > c.TEXT_BYTES:
+        raise ValueError(f"fault: as JSON it has {len(text)} bytes, at most {c.TEXT_BYTES} fit into a command")
+    return [ChannelCommand(kind=c.FAULT, text=text, lease_ns=_lease_ns(request))]
+
+
+def _clear(request: dict[str, Any]) -> list[ChannelCommand]:
+    names = request.get("names", [])
+    if not isinstance(names, list) or not all(isinstance(name, str) and name for name in names):
+        raise ValueError('clear: "names" is a list of faults; all of this client where it is left out')
+    return [ChannelCommand(kind=c.CLEAR, text=c.shortened(name)) for name in names or [""]]
 
 
 def _group(request: dict[str, Any]) -> dict[str, Any]:
@@ -130,6 +153,8 @@ _COMMANDS: dict[str, Callable[[dict[str, Any]], list[ChannelCommand]]] = {
     "parameter": _parameter,
     "reference": _reference,
     "mark": _mark,
+    "fault": _fault,
+    "clear": _clear,
 }
 #: What the door answers itself.
 OTHERS = ("hello", "signals", "status", "record", "record_stop", "subscribe", "alive")

@@ -153,6 +153,9 @@ FAULTS: tuple[FaultDefinition, ...] = (
 #: All faults: those of the plant, and those of the bus.
 BY_NAME = {fault.name: fault for fault in (*FAULTS, *BUS_FAULTS)}
 
+#: The number of each, from 1: what the bus tells instead of the name.
+NUMBERS = {name: number for number, name in enumerate(BY_NAME, 1)}
+
 
 def fault_named(name: str) -> FaultDefinition:
     """Return a fault of the catalogue.

@@ -2,7 +2,7 @@
 
 from itertools import groupby
 
-from hilplant.faults.catalogue import BY_NAME, fault_named
+from hilplant.faults.catalogue import BY_NAME, NUMBERS, fault_named
 from hilplant.faults.fault import ABOUT, FaultDefinition, Quantity
 
 
@@ -39,11 +39,18 @@ def fault_lines(name: str) -> list[str]:
 
 def table() -> str:
     """Return the catalogue as a table in Markdown."""
-    rows = ["| fault | kind | meaning | quantities | effect |", "|---|---|---|---|---|"]
-    for fault in BY_NAME.values():
+    rows = ["| no. | fault | kind | meaning | quantities | effect |", "|---|---|---|---|---|---|"]
+    for name, fault in BY_NAME.items():
         quantities = "; ".join(_takes(fault))
-        rows.append(f"| `{fault.name}` | {fault.kind} | {fault.meaning} | {quantities} | {fault.effect} |")
+        cells = (NUMBERS[name], f"`{name}`", fault.kind, fault.meaning, quantities, fault.effect)
+        rows.append(f"| {' | '.join(map(str, cells))} |")
     return "\n".join(rows) + "\n"
+
+
+def value_table() -> str:
+    """Return the line of a DBC that gives the numbers of `FaultShown` their names."""
+    labels = " ".join(f'{number} "{name}"' for name, number in reversed(NUMBERS.items()))
+    return f'VAL_ 534 FaultShown {labels} 0 "none" ;'
 
 
 def _takes(fault: FaultDefinition) -> list[str]:

@@ -32,6 +32,17 @@ class FaultPlayer:
         self.courses.append(course)
         self._levels += (0.0,)
 
+    def remove(self, course: Course) -> None:
+        """Take one out that is over, and whose changes have been taken back."""
+        place = self.courses.index(course)
+        del self.courses[place]
+        self._levels = self._levels[:place] + self._levels[place + 1 :]
+
+    def rebase(self, index: int, value: float) -> float:
+        """Change an element of the row without faults; returns its value with them."""
+        self._base[index] = value
+        return self._value(index)
+
     @property
     def present(self) -> tuple[str, ...]:
         """Names of the faults that are there now."""

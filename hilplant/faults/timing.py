@@ -52,6 +52,11 @@ class Course:
         """Whether it waits for a condition, so that every tick has to be looked at."""
         return bool(self.inserted.when) and self._begin is None and not self._ended
 
+    @property
+    def over(self) -> bool:
+        """Whether it is gone and will not come again."""
+        return self._ended or (not self.inserted.pause and self._begin is not None and self.level == 0.0)
+
     def end(self) -> None:
         """Let it go, and not come again."""
         self._ended = True

@@ -1,9 +1,10 @@
 """The `faults` section of a scenario: what is inserted, when, and for how long."""
 
+import json
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
 
 from hilplant.checked_yaml.checked import Checked, NotNegative, Positive, wrong
 from hilplant.failure import Failure
@@ -95,6 +96,46 @@ class FaultEntry(Checked):
             place=place,
             about=self.about,
         )
+
+
+#: The keys of a fault's course and of what it is about; all others are its quantities, where all are named alike.
+_COURSE = {field.alias or name for name, field in FaultEntry.model_fields.items()} - {"fault", "with"}
+
+
+def entry_named(name: str, keys: Mapping[str, Any]) -> FaultEntry:
+    """Return a fault of which all keys stand side by side: ``resistance_ohm=0.5, for_=1.0``; `for_` stands for `for`.
+
+    Raises
+    ------
+    Failure
+        Saying what would be right.
+
+    """
+    given = {key.rstrip("_"): value for key, value in keys.items()}
+    course = {key: value for key, value in given.items() if key in _COURSE}
+    quantities = {key: value for key, value in given.items() if key not in _COURSE}
+    return _checked({"fault": name, "with": quantities} | course)
+
+
+def entry_from(text: bytes) -> FaultEntry:
+    """Return the fault that a JSON object describes, with a scenario's keys; Failure where it is none."""
+    try:
+        written = json.loads(text)
+    except (ValueError, RecursionError):
+        written = None
+    if not isinstance(written, dict):
+        raise Failure("a fault is one JSON object")
+    return _checked(written)
+
+
+def _checked(written: Any) -> FaultEntry:
+    try:
+        return FaultEntry.model_validate(written)
+    except ValidationError as error:
+        told = [(".".join(map(str, each["loc"])), each["msg"]) for each in error.errors()]
+        raise Failure(
+            "; ".join(text if place in ("", "fault") else f"{place}: {text}" for place, text in told)
+        ) from error
 
 
 #: Entries with the file and line at which each stands.

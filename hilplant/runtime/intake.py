@@ -1,48 +1,57 @@
 """What a tick begins with: the commands of the mailbox, and leases that have run out."""
 
 import math
-from collections.abc import Callable
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Callable, Sequence
 
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.runtime import commands as c
 from hilplant.runtime.commands import ChannelCommand
+from hilplant.runtime.held_faults import HeldFaults
 from hilplant.runtime.mailbox import Mailbox
 from hilplant.runtime.ownership import Ownership
 from hilplant.signals import INPUTS
+
+#: Gives the commands that are due beside those of the mailbox, such as a scenario's: called with the time [ns].
+Source = Callable[[int], Sequence[ChannelCommand]]
 
 
 class Intake:
     """Applies commands to the inputs and parameters of a loop, and answers each by an event.
 
-    `parameters` is the row that the loop steps with. `reference`, where there is a controller inside the loop, takes
-    its wanted speed.
+    `reference`, where there is a controller inside the loop, takes its wanted speed; `source` gives commands beside the
+    mailbox.
     """
 
     def __init__(
         self,
-        mailbox: Mailbox,
+        mailbox: Mailbox | None,
         ownership: Ownership,
-        parameters: NDArray[np.float64],
+        faults: HeldFaults,
         tell: Callable[[ChannelCommand], None],
     ) -> None:
         """`tell` gets each answer."""
         self.reference: Callable[[float], None] | None = None
-        self._mailbox, self._ownership, self._parameters, self._tell = mailbox, ownership, parameters, tell
+        self.source: Source | None = None
+        self._why = ""
+        self.faults = faults
+        self._mailbox, self._ownership, self._tell = mailbox, ownership, tell
         self._apply = (
             self._set, self._hold, self._release, self._parameter, self._refer, _note, _note, self._alive, _note,
+            self._insert, self._clear,
         )  # fmt: skip
 
     def begin(self, tick: int, now_ns: int) -> None:
         """Do what the tick begins with."""
-        if self._mailbox.waiting:
+        if self._mailbox is not None and self._mailbox.waiting:
             for command in self._mailbox.take():
+                self._do(command, tick, now_ns)
+        if self.source is not None:
+            for command in self.source(now_ns):
                 self._do(command, tick, now_ns)
         if now_ns >= self._ownership.next_end_ns:
             for gone in self._ownership.expired(now_ns):
                 self._tell(gone._replace(tick=tick, time_ns=now_ns, outcome=c.LEASE_OVER))
+        self.faults.begin(tick, now_ns)
 
     def _do(self, command: ChannelCommand, tick: int, now_ns: int) -> None:
         """Apply one command and answer it; a sign of life is not answered, nor each value of a scenario's ramp."""
@@ -52,6 +61,8 @@ class Intake:
             return
         silent = command.kind == c.ALIVE or self._ownership.goes_on(command)
         outcome = self._apply[command.kind](command, now_ns)
+        if outcome == c.REFUSED:
+            command = command._replace(text=c.shortened(self._why))
         if not silent or outcome != c.APPLIED:
             self._tell(command._replace(tick=tick, time_ns=now_ns, outcome=outcome))
 
@@ -69,7 +80,7 @@ class Intake:
             return c.NO_ELEMENT
         if not math.isfinite(command.value):
             return c.OUT_OF_RANGE
-        self._parameters[command.element] = command.value
+        self.faults.parameter(command.element, command.value)
         return c.APPLIED
 
     def _refer(self, command: ChannelCommand, now_ns: int) -> int:
@@ -82,7 +93,15 @@ class Intake:
 
     def _alive(self, command: ChannelCommand, now_ns: int) -> int:
         self._ownership.alive(command.client, now_ns)
+        self.faults.alive(command.client, now_ns)
         return c.APPLIED
+
+    def _insert(self, command: ChannelCommand, now_ns: int) -> int:
+        self._why = self.faults.insert(command, now_ns)
+        return c.REFUSED if self._why else c.APPLIED
+
+    def _clear(self, command: ChannelCommand, now_ns: int) -> int:
+        return self.faults.clear(command)
 
 
 def _note(command: ChannelCommand, now_ns: int) -> int:

@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bus.node import Node
+from hilplant.faults.acting import ActingFaults
 from hilplant.models.plant import tick as plant_tick
 from hilplant.models.records import STATE_INDEX
 from hilplant.runtime.clock import Clock
 from hilplant.runtime.commands import BUS, SAFE_STATE, ChannelCommand
+from hilplant.runtime.held_faults import HeldFaults
 from hilplant.runtime.intake import Intake
 from hilplant.runtime.latency import Latency
 from hilplant.runtime.lost_time import LostTime
@@ -132,9 +134,10 @@ class Loop:
         self._bus_ns = 0
         node.observe = self._observe if ring is not None else None
 
-    def listen(self, mailbox: Mailbox, tell: Callable[[ChannelCommand], None]) -> Intake:
-        """Take commands from a mailbox at each tick's start, and give the answers to `tell`."""
-        self.intake = Intake(mailbox, self._ownership, self._parameters, tell)
+    def listen(self, mailbox: Mailbox | None, tell: Callable[[ChannelCommand], None], acting: ActingFaults) -> Intake:
+        """Take commands and faults at each tick's start, and give answers and events to `tell`."""
+        faults = HeldFaults(acting, (self._line, self._parameters), self._node.counts, tell)
+        self.intake = Intake(mailbox, self._ownership, faults, tell)
         return self.intake
 
     def run(self, ticks: int | None, stop: Callable[[], bool], watchdog: Watchdog) -> None:

@@ -1,7 +1,7 @@
 """The daemon: opens the bus, starts the recorder, asks for real time, and runs the loop until it is told to end."""
 
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
@@ -9,6 +9,7 @@ from typing import Any, Protocol
 from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.node import LinkSettings, Node
 from hilplant.bus.transport import Transport, open_transport
+from hilplant.faults.acting import ActingFaults
 from hilplant.runtime.clock import Clock, WallClock
 from hilplant.runtime.loop import Late, Loop, PlantRows
 from hilplant.runtime.ring import Ring
@@ -67,6 +68,10 @@ class ServedBench(PlantRows, Protocol):
     @property
     def others(self) -> frozenset[tuple[int, bool]]:
         """Identifiers of messages between others, with whether they are extended."""
+
+    @property
+    def sources(self) -> Mapping[str, str]:
+        """Texts of the bench's files, the database among them."""
 
     @property
     def loop(self) -> ServedLoop:
@@ -168,9 +173,10 @@ def serve(  # noqa: PLR0913, PLR0917
     ticks = None if seconds is None else round(seconds * SECOND_NS / bench.step_ns)
     transport = open_transport(bench.interface)
     try:
-        loop = build_loop(bench, transport, WallClock(), ring)
+        acting = ActingFaults(bench, transport)
+        loop = build_loop(bench, acting.transport if ring is not None else transport, WallClock(), ring)
         if ring is not None:
-            loop.listen(ring.mailbox, ring.events.append)
+            loop.listen(ring.mailbox, ring.events.append, acting)
         if prepare is not None:
             prepare(loop)
         loop.warm_up()

@@ -1,10 +1,11 @@
-"""All ticks and frames of a run in virtual time, kept in memory; stands where the ring to the recorder would."""
+"""All ticks, frames and events of a run in virtual time, kept in memory; stands where the ring would."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.arrays import Floats
 from hilplant.bus.frame import Frame
+from hilplant.runtime.commands import COMMAND_DTYPE, ChannelCommand
 from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import FRAME_DTYPE
 
@@ -17,6 +18,7 @@ class Tape:
     def __init__(self) -> None:
         self._rows, self.ticks = np.zeros((4096, ROW_WIDTH)), 0
         self.frames: list[tuple[int, int, Frame, bool]] = []
+        self.events: list[ChannelCommand] = []
 
     def next_row(self) -> Floats:
         """Return the row to fill."""
@@ -45,3 +47,7 @@ class Tape:
             data = frame.data.ljust(64, b"\0")
             found[index] = (tick, bus_ns, frame.identifier, flags, len(frame.data), 0, list(data))
         return found
+
+    def read_events(self) -> NDArray[np.void]:
+        """Return all events as the ring holds them."""
+        return np.array([tuple(event) for event in self.events], COMMAND_DTYPE)

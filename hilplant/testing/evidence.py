@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from hilplant.bus.frame import Frame
 from hilplant.bus.protection import Checker, FrameCheck, Protection
 from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, STATUS_COLUMNS
 from hilplant.recording.reader import Recording, matrix
+from hilplant.runtime.commands import COMES, GOES, KINDS
 from hilplant.runtime.loop import STOPPED
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS, STATUS_INDEX
 from hilplant.testing.known_signals import DatabaseSignals
@@ -24,18 +25,41 @@ Floats = NDArray[np.float64]
 _FIRST_OUTPUT = 2 + len(INPUTS)
 _FIRST_STATUS = _FIRST_OUTPUT + len(OUTPUTS)
 _MODE = _FIRST_STATUS + STATUS_INDEX["mode"]
+_EDGES = {KINDS[COMES]: True, KINDS[GOES]: False}
 #: Counts whose rise says that time or data were lost in that tick.
 _LOSSES = [_FIRST_STATUS + STATUS_INDEX[name] for name in ("overruns", "missed_frame", "ring_lost", "queue_full")]
 
 
+class FaultEdge(NamedTuple):
+    """A fault that is there from a tick on, or no longer."""
+
+    tick: int
+    name: str
+    there: bool
+
+
 @dataclass(frozen=True)
 class Evidence:
-    """Rows as the loop writes them (tick, deadline, inputs, outputs, status), and every frame with its tick."""
+    """Rows as the loop writes them (tick, deadline, inputs, outputs, status), and every frame with its tick.
+
+    `edges` are the ticks at which faults of a name came and went.
+    """
 
     step_ns: int
     rows: Floats
     frame_ticks: NDArray[np.int64]
     frames: Sequence[Frame]
+    edges: Sequence[FaultEdge] = ()
+
+    def fault_marks(self) -> dict[str, float]:
+        """Return when each fault first came and last went [s], by a name for people; what stays has no end."""
+        found: dict[str, float] = {}
+        for each in self.edges:
+            if each.there:
+                found.setdefault(each.name, each.tick * self.step_ns / SECOND_NS)
+            else:
+                found[f"{each.name} ends"] = each.tick * self.step_ns / SECOND_NS
+        return found
 
     def trace(self, expectations: Iterable[Expectation], database: DatabaseSignals, ticks: int) -> Trace:
         """Return what these expectations look at, in the first `ticks` periods; the server's last tick is left out."""
@@ -108,7 +132,7 @@ def column_of(name: str) -> int | None:
 
 def recorded(recording: Recording) -> Evidence:
     """Return what a recording holds."""
-    rows, ticks, frames = [], [], []
+    rows, ticks, frames, edges = [], [], [], []
     step_ns = recording.run.step_ns
     for batch in recording.batches():
         values = matrix(batch, ("tick", "deadline_ns", *INPUT_COLUMNS, *OUTPUT_COLUMNS, *STATUS_COLUMNS))
@@ -117,7 +141,10 @@ def recorded(recording: Recording) -> Evidence:
             ticks.append(round(frame["time_ns"] / step_ns))
             flags = [frame[flag] for flag in ("extended", "fd", "bitrate_switch", "remote", "error")]
             frames.append(Frame(frame["identifier"], frame["data"], *flags))
-    return Evidence(step_ns, np.concatenate(rows), np.array(ticks, np.int64), frames)
+        for event in batch.column("events").flatten().to_pylist():
+            if event["kind"] in _EDGES:
+                edges.append(FaultEdge(round(event["time_ns"] / step_ns), event["text"], _EDGES[event["kind"]]))
+    return Evidence(step_ns, np.concatenate(rows), np.array(ticks, np.int64), frames, edges)
 
 
 def _held(values: Floats, places: NDArray[np.int64]) -> Floats:

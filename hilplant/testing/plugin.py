@@ -89,11 +89,9 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
     report = yield
     if report.when == "call" and report.failed:
         if item.stash.get(_WIPER, None) is not None:
-            report.sections.append(
-                ("hilplant", _keep(item, item.stash[_WIPER].record, item.stash[_WIPER].virtual.replays))
-            )
+            report.sections.append(("hilplant", _keep(item, item.stash[_WIPER].record)))
         elif isinstance(item, ScenarioItem) and item.done is not None:
-            kept = _keep(item, item.done.record, item.done.replays)
+            kept = _keep(item, item.done.record)
             report.sections.append(("hilplant", f"{kept}\nagain: {item.done.rerun}"))
     return report
 
@@ -160,7 +158,7 @@ def _bench(config: pytest.Config, otherwise: str | None = None) -> "Bench":
 _BENCHES: "pytest.StashKey[Benches]" = pytest.StashKey()
 
 
-def _keep(item: pytest.Item, record: Any, replays: bool) -> str:
+def _keep(item: pytest.Item, record: Any) -> str:
     """Write recording and plot into a folder named after the test."""
     from hilplant.atomic_write import make_folder
     from hilplant.failure import Failure
@@ -174,5 +172,4 @@ def _keep(item: pytest.Item, record: Any, replays: bool) -> str:
         plot_recording(recording, plot)
     except (Failure, OSError) as error:  # what the test says is worth more
         return f"nothing is kept of this run: {error}"
-    replay = f"hilplant replay {recording}" if replays else "not possible, faults have changed the plant"
-    return f"recording: {recording}\nplot: {plot}\nreplay: {replay}"
+    return f"recording: {recording}\nplot: {plot}\nreplay: hilplant replay {recording}"

@@ -33,7 +33,7 @@ class ScenarioTest:
     """A scenario that was run, with its evidence, and what came of each expectation.
 
     `rerun` is the command line that does it again; `record` writes the run to a file where it is not from one. `faults`
-    are the times at which faults came and went, by their names; `replays` is false where they have changed the plant.
+    are the times at which faults came and went, by their names.
     """
 
     scenario: Scenario
@@ -45,7 +45,6 @@ class ScenarioTest:
     rerun: str
     record: Callable[[Path], None] | None = None
     faults: Mapping[str, float] = field(default_factory=dict)
-    replays: bool = True
 
     @property
     def name(self) -> str:
@@ -70,7 +69,7 @@ def run_virtually(
     options = (f" --bench {bench_name}" if bench_name else "") + ("" if stand_in else " --ecu external")
     rerun = f"hilplant test {scenario.path}{options}"
     done = judged(scenario, bench.name, virtual.evidence(), database, expectations, rerun)
-    return replace(done, record=virtual.record, faults=virtual.faults.marks(), replays=virtual.replays)
+    return replace(done, record=virtual.record)
 
 
 def judge_recording(path: Path, scenario_name: str, bench_name: str | None = None) -> ScenarioTest:
@@ -108,4 +107,6 @@ def judged(  # noqa: PLR0913, PLR0917
     """Judge what was expected on what was found."""
     trace = evidence.trace(expectations, database, ticks_of(scenario, evidence.step_ns))
     found = tuple(Judged(each, judge(each, trace)) for each in expectations)
-    return ScenarioTest(scenario, bench_name, trace.step_s, evidence, database, found, rerun)
+    return ScenarioTest(
+        scenario, bench_name, trace.step_s, evidence, database, found, rerun, faults=evidence.fault_marks()
+    )

@@ -9,7 +9,6 @@ from typing import Any, cast
 
 import numpy as np
 
-from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.bench.assembly import initial_state
 from hilplant.bus.codec import SentMessage
@@ -19,17 +18,17 @@ from hilplant.ecu.node import EcuNode
 from hilplant.ecu.settings import controller_settings
 from hilplant.ecu.stalk import stalk_at
 from hilplant.faults.acting import ActingFaults
-from hilplant.faults.player import signal_row
-from hilplant.faults.timing import Row
-from hilplant.faults.written import inserted
+from hilplant.faults.timing import Course
+from hilplant.faults.written import FaultEntry, inserted
 from hilplant.runtime.clock import VirtualClock
+from hilplant.runtime.commands import COMES, GOES
 from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.server import build_loop
 from hilplant.runtime.tape import Tape
-from hilplant.signals import ECU_TX, INPUT_INDEX, INPUTS, OUTPUTS
+from hilplant.signals import ECU_TX, INPUT_INDEX
 from hilplant.simulation.scenario import Scenario
-from hilplant.testing.evidence import Evidence
+from hilplant.testing.evidence import Evidence, FaultEdge
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 _RELAYS = frozenset((INPUT_INDEX["relay_on"], INPUT_INDEX["relay_fast"]))
@@ -41,8 +40,7 @@ class VirtualBench:
     """A bench that is stepped: plant, stand-in ECU (`stand_in`) and the scenario's hand on one bus.
 
     Time 0 is the first tick. A relay that the scenario commands goes over the bus, in the ECU's messages, and no
-    stand-in ECU joins; every other input of a scenario is set in the plant itself, in its tick. `faults` are those of
-    the scenario, and take more.
+    stand-in ECU joins; every other input of a scenario is set in the plant itself, in its tick.
     """
 
     def __init__(self, bench: Bench, scenario: Scenario | None = None, stand_in: bool = True) -> None:
@@ -50,14 +48,13 @@ class VirtualBench:
             row = initial_state(bench.parameters, bench.initial | scenario.initial)
             bench = replace(bench, state_row=row)
         self.bench, self.bus, self.tape = bench, InMemoryBus(), Tape()
-        self.faults = ActingFaults(bench, self.bus.end())
-        for each in inserted(scenario.faults, bench.step_ns / SECOND_NS) if scenario is not None else ():
-            self.faults.insert(each)
+        acting = ActingFaults(bench, self.bus.end())
         self._stalk = scenario.stalk if scenario is not None else ()
-        stepped = replace(bench, parameter_row=bench.parameter_row.copy())  # faults change it
-        self._loop = build_loop(stepped, self.faults.transport, VirtualClock(), cast("Ring", self.tape))
-        # the row that the loop steps with: one of its own, where it has one
-        self._parameters: Floats = getattr(self._loop, "_parameters", stepped.parameter_row)
+        self._loop = build_loop(bench, acting.transport, VirtualClock(), cast("Ring", self.tape))
+        #: The faults of the scenario; they take more.
+        self.faults = self._loop.listen(None, self.tape.events.append, acting).faults
+        for each in inserted(scenario.faults, bench.step_ns / SECOND_NS) if scenario is not None else ():
+            self.faults.hold(each)
         self._changes = {} if scenario is None else _changes(scenario, bench)
         commanded = scenario is not None and bool(_RELAYS & set(scenario.entries))
         self._commander = _Commander(bench, self.bus) if commanded else None
@@ -86,19 +83,9 @@ class VirtualBench:
                 self._loop.commanded[index] = value
         if self._commander is not None:
             self._commander.send(now_ns)
-        for index, value in self.faults.begin(tick, self._seen()).items():
-            self._parameters[index] = value
         self._loop.tick(now_ns)
         if self.ecu is not None and tick % self._poll_ticks == 0:
             self.ecu.poll(now_ns, stalk_at(self._stalk, now_ns / SECOND_NS))
-
-    def _seen(self) -> Row | None:
-        """Return the signals of the tick before, where a fault waits for them."""
-        if not (self.tape.ticks and self.faults.watches):
-            return None
-        row = self.tape.read_rows()[-1, 2:]
-        ends = len(INPUTS), len(INPUTS) + len(OUTPUTS)
-        return signal_row(INPUTS, row[: ends[0]]) | signal_row(OUTPUTS, row[ends[0] : ends[1]])
 
     def run(self, ticks: int) -> None:
         """Take many ticks."""
@@ -109,16 +96,21 @@ class VirtualBench:
         """Set an input of the plant from the next tick on."""
         self._loop.commanded[index] = value
 
+    def insert_fault(self, entry: FaultEntry) -> Course:
+        """Insert a fault; its times count from now."""
+        made = entry.inserted(self.bench.step_ns / SECOND_NS)
+        return self.faults.hold(replace(made, at=made.at + self.ticks))
+
     def evidence(self) -> Evidence:
         """Return what has been so far."""
         frames = self.tape.frames
         places = np.array([bus_ns // self.bench.step_ns for _, bus_ns, _, _ in frames], np.int64)
-        return Evidence(self.bench.step_ns, self.tape.read_rows(), places, [frame for _, _, frame, _ in frames])
-
-    @property
-    def replays(self) -> bool:
-        """Whether a recording of this run can be replayed: it does not hold what faults do to the plant."""
-        return self.faults.parameters_kept
+        edges = [
+            FaultEdge(event.time_ns // self.bench.step_ns, event.text.decode(), event.kind == COMES)
+            for event in self.tape.events
+            if event.kind in (COMES, GOES)
+        ]
+        return Evidence(self.bench.step_ns, self.tape.read_rows(), places, [frame for _, _, frame, _ in frames], edges)
 
     def record(self, path: Path) -> None:
         """Write what has been so far as a recording, over a file that is there."""
@@ -127,7 +119,7 @@ class VirtualBench:
 
         path.unlink(missing_ok=True)
         writer = RecordingWriter(path, describe(self.bench, _NO_DATE), ROW_WIDTH)
-        writer.add(self.tape.read_rows(), self.tape.read_frames())
+        writer.add(self.tape.read_rows(), self.tape.read_frames(), self.tape.read_events())
         writer.write(last=True)
         writer.close()
 

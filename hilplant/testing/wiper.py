@@ -6,14 +6,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pydantic import ValidationError
-
 from hilplant.bench import Bench
 from hilplant.bench.values import input_index, signal_value
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.failure import Failure
 from hilplant.faults.timing import Course
-from hilplant.faults.written import FaultEntry
+from hilplant.faults.written import entry_named
 from hilplant.signals import INPUTS
 from hilplant.testing.evidence import column_of
 from hilplant.testing.known_signals import database_signals, protections_of
@@ -31,8 +29,6 @@ if TYPE_CHECKING:
     from hilplant.testing.virtual_can import VirtualCanBus
 
 _DEGREES = "_deg"
-#: The keys of a fault's course; all others are its quantities.
-_COURSE = {field.alias or name for name, field in FaultEntry.model_fields.items()} - {"fault", "with"}
 
 
 class WiperUnderTest:
@@ -112,15 +108,7 @@ class WiperUnderTest:
 
     def insert_fault(self, fault: str, /, **keys: Any) -> Course:
         """Insert a fault that stays for as long as it says; keys as for `fault`."""
-        given = {key.rstrip("_"): value for key, value in keys.items()}
-        course = {key: value for key, value in given.items() if key in _COURSE}
-        quantities = {key: value for key, value in given.items() if key not in _COURSE}
-        at = self.time_s + course.pop("at", 0.0)
-        try:
-            entry = FaultEntry.model_validate({"fault": fault, "with": quantities, "at": at} | course)
-        except ValidationError as error:
-            raise Failure("; ".join(each["msg"] for each in error.errors())) from error
-        return self.virtual.faults.insert(entry.inserted(self.virtual.faults.step_s))
+        return self.virtual.insert_fault(entry_named(fault, keys))
 
     def step(self) -> None:
         """Let one tick pass."""

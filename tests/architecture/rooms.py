@@ -57,10 +57,12 @@ ARROWS: dict[str, str] = {
     "verdicts": "units declaration signals arrays failure checked_yaml",
     "faults": "units declaration signals arrays failure models checked_yaml bus verdicts",
     "bench": f"{_PHYSICS} checked_yaml bus",
-    "runtime": "units declaration signals arrays failure jit models control bus",
+    "runtime": "units declaration signals arrays failure jit models control bus faults",
     "ecu": f"{_PHYSICS} checked_yaml bus bench runtime",
     "recording": "units declaration signals arrays failure extras atomic_write jit models bus runtime",
-    "channel": "units declaration signals failure extras companion checked_yaml models control bench runtime recording",
+    "channel": (
+        "units declaration signals failure extras companion checked_yaml models control faults bench runtime recording"
+    ),
     "library": _OFFLINE,
     "c_source": _OFFLINE,
     "simulation": _OFFLINE,

@@ -3,15 +3,14 @@
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.channel_rig import Run
 from support.loop_rig import SLOW, STEP_NS, SUPPLY, ListedTransport
 
-from hilplant.bench import load_bench
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.recording.reader import read_recording
 from hilplant.recording.recorder import description_now
@@ -22,7 +21,7 @@ from hilplant.runtime import commands as c
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.commands import ChannelCommand
 from hilplant.runtime.follower import Follower
-from hilplant.runtime.loop import FIRST_OWNER, ROW_WIDTH
+from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.mailbox import MOST_A_TICK
 from hilplant.runtime.ownership import Ownership
 from hilplant.runtime.ring import Ring
@@ -33,47 +32,11 @@ RELAY_ON, SUPPLY_V, SCREEN = (INPUT_INDEX[name] for name in ("relay_on", "supply
 _OUTPUT = 2 + len(INPUTS)
 
 
-class Run:
-    """The default bench's loop with a mailbox, ticked by hand."""
-
-    def __init__(self, rows: int = 4096) -> None:
-        self.bench, self.transport = load_bench("default"), ListedTransport()
-        self.ring = Ring.create(ROW_WIDTH, rows=rows, frames=1024)
-        self.loop = build_loop(self.bench, self.transport, VirtualClock(), self.ring)
-        self.loop.listen(self.ring.mailbox, self.ring.events.append)
-        self.follower = Follower(self.ring.name)
-        self.now = 0
-
-    def tick(self, ticks: int = 1, command_every: int = 0) -> np.ndarray:
-        for _ in range(ticks):
-            if command_every and self.now % command_every == 0:
-                self.transport.arrived.append(SLOW)
-            self.loop.tick(self.now * STEP_NS)
-            self.now += 1
-        return self.ring.latest()
-
-    def post(self, kind: int, element: int = 0, value: float = 0.0, **more: Any) -> None:
-        assert self.ring.mailbox.post(
-            [ChannelCommand(client=more.pop("client", 1), kind=kind, element=element, value=value, **more)]
-        )
-
-    def events(self) -> list[tuple[int, str, str]]:
-        found = self.follower.events().records
-        return [(int(e["tick"]), c.KINDS[e["kind"]], c.OUTCOMES[e["outcome"]]) for e in found]
-
-    def input(self, index: int) -> float:
-        return float(self.ring.latest()[2 + index])
-
-    def owner(self, index: int) -> str:
-        return c.OWNERS[int(self.ring.latest()[FIRST_OWNER + index])]
-
-
 @pytest.fixture
 def run() -> Iterator[Run]:
     run = Run()
     yield run
-    run.follower.close()
-    run.ring.close()
+    run.close()
 
 
 def supply_frame(run: Run) -> object:

@@ -102,6 +102,60 @@ def test_a_killed_client_changes_nothing_but_lets_go_of_what_it_held(run: object
         assert tick < killed < onlooker.latest()["tick"] <= killed + 2500
 
 
+FAULTS_CLIENT = CLIENT.replace('override("supply_v", 9.0)', 'fault("resistance_53", resistance_ohm=0.5)')
+
+
+def test_faults_of_a_killed_client_go_and_all_are_seen_while_they_are_there(run: object) -> None:
+    client = subprocess.Popen([sys.executable, "-c", FAULTS_CLIENT], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert client.stdout is not None
+    tick = int(client.stdout.readline())
+    threading.Event().wait(2.0)  # longer than the lease: its signs of life hold it
+    with hilplant.connect(CHANNEL) as onlooker:
+        (there,) = onlooker.status()["faults"]
+        assert (there["name"], there["owner"], there["tick"]) == ("resistance_53", "hand", tick)
+        with pytest.raises(Failure, match="resistance_53: held by another client"):
+            onlooker.clear("resistance_53")
+        os.kill(client.pid, signal.SIGKILL)
+        client.communicate()
+        wait_until(lambda: not onlooker.latest()["status.faults_active"])
+        wait_until(lambda: onlooker.status()["faults"] == [])
+
+
+def test_a_fault_is_inserted_replaced_and_cleared_each_in_the_tick_that_is_told(run: object) -> None:
+    with hilplant.connect(CHANNEL) as channel:
+        channel.rows(["tick"])
+        inserted = channel.fault("frames_lost", message="ParkSwitch", share=0.5)
+        again = channel.fault("frames_lost", message="ParkSwitch", share=1.0)
+        cleared = channel.clear("frames_lost")
+        wait_until(lambda: channel.latest()["tick"] > cleared)
+        rows, lost = channel.rows(["tick", "faults_active"])
+        assert lost == 0
+        active = {int(tick): int(count) for tick, count in rows}
+        assert [active[tick] for tick in (inserted - 1, inserted, again, cleared - 1, cleared)] == [0, 1, 1, 1, 0]
+        with pytest.raises(Failure, match="neither hears nor sends a message 'ParkSwich', did you mean 'ParkSwitch'"):
+            channel.fault("frames_lost", message="ParkSwich")
+
+
+def test_a_fault_from_a_shell_lasts_as_long_as_it_says(run: object) -> None:
+    command = [sys.executable, "-m", "hilplant", "fault", "--run", CHANNEL]
+    with hilplant.connect(CHANNEL) as channel:
+        channel.rows(["tick"])
+        done = subprocess.run(
+            [*command, "resistance_53", "resistance_ohm=0.5", "--for", "0.3"],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        rows, lost = channel.rows(["tick", "faults_active", "fault_shown"])
+    assert lost == 0
+    ticks = rows[rows[:, 1] > 0.0]
+    assert done.stdout == f"resistance_53: tick {ticks[0, 0]:.0f}\n"
+    assert len(ticks) <= 300  # of 300 ms, less what came late
+    wrong = subprocess.run([*command, "open_54"], capture_output=True, text=True, check=False)
+    assert (wrong.returncode, wrong.stderr) == (2, "there is no fault 'open_54', did you mean 'open_53'?\n")
+
+
 def test_nonsense_is_counted_and_harms_nobody(run: object) -> None:
     described = run_named(CHANNEL)
     with hilplant.connect(CHANNEL) as channel:
@@ -179,7 +233,7 @@ def test_the_door_can_die_and_the_run_goes_on_and_its_recording_replays(run: sub
     found = replay(path)
     assert found.equal, str(found)
     kinds = {e["kind"] for row in read_recording(path).table(["events"]).to_pylist() for e in row["events"]}
-    assert {"set", "override", "release", "parameter", "mark"} <= kinds
+    assert {"set", "override", "release", "parameter", "mark", "fault", "comes", "goes", "clear"} <= kinds
 
 
 def test_a_recording_begins_and_ends_while_the_run_goes_on(tmp_path: Path) -> None:

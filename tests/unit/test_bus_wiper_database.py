@@ -9,13 +9,14 @@ from cantools.database.can.message import Message
 from cantools.database.can.signal import Signal
 from support import signal_table
 
+from hilplant.faults.catalogue import NUMBERS
 from hilplant.signals import ACTIVE_MODELS, ECU_FAULTS, ECU_STATES, MODES, RECORDING, SCREENS, STALK_POSITIONS, STATUS
 
 ROOT = Path(__file__).parents[2]
 WIPER = Database(strict=True)
 WIPER.add_dbc_file(str(ROOT / "dbc" / "wiper.dbc"))
 # sent at changes too, so that nothing waits for its cycle
-AT_ONCE = ("EcuStatus", "MotorStatus", "ParkSwitch", "PlantStatus", "LossFaults")
+AT_ONCE = ("EcuStatus", "MotorStatus", "ParkSwitch", "PlantStatus", "LossFaults", "FaultStatus")
 # the ECU speaks to the plant, and of itself to the driver
 DRIVERS = ("StalkCommand", "EcuStatus")
 MESSAGES = pytest.mark.parametrize("message", WIPER.messages, ids=lambda message: message.name)
@@ -62,8 +63,27 @@ def test_value_tables_hold_the_plants_own_names() -> None:
     assert tables["EcuFault"] == dict(enumerate(ECU_FAULTS))
     assert tables["LoadMode"] == tables["MotorMode"] == dict(enumerate(ACTIVE_MODELS))
     assert tables["Recording"] == dict(enumerate(RECORDING))
-    from_plant = {"Mode", "Screen", "RelayOn", "RelayFast", "ParkContact", "Guard", "LoadMode", "MotorMode"}
-    assert set(tables) == from_plant | {"Recording"} | {"Master_Input", "Flick_Wipe", "Wash", "EcuState", "EcuFault"}
+    assert tables["FaultShown"] == {0: "none"} | {number: name for name, number in NUMBERS.items()}, (
+        "renew it in both databases: python -c 'from hilplant.faults.listing import value_table; print(value_table())'"
+    )
+    from_plant = {
+        "FaultShown",
+        "Mode",
+        "Screen",
+        "RelayOn",
+        "RelayFast",
+        "ParkContact",
+        "Guard",
+        "LoadMode",
+        "MotorMode",
+    }
+    assert set(tables) == from_plant | {"FaultShown", "Recording"} | {
+        "Master_Input",
+        "Flick_Wipe",
+        "Wash",
+        "EcuState",
+        "EcuFault",
+    }
 
 
 def test_every_count_of_the_status_has_a_signal() -> None:
@@ -92,6 +112,8 @@ def _bits(signal: Signal) -> str:
 
 
 def _unit(signal: Signal) -> str:
+    if signal.name == "FaultShown":
+        return "0 none, else the number in [faults.md](faults.md)"
     if signal.choices:
         return ", ".join(f"{raw} {label}" for raw, label in sorted(signal.choices.items()))
     if not signal.unit and float(signal.scale) == 1.0:
