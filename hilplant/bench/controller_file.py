@@ -4,10 +4,13 @@ from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from hilplant.bench.parts import Sourced
+from hilplant.bench.parts import Referred, Sourced
+from hilplant.bench.speed_network_file import SpeedNetworkFile, motor_record_hash
 from hilplant.checked_yaml.checked import Checked, NotNegative, Positive, wrong
 from hilplant.control import catalogue
+from hilplant.control.controller import Tables
 from hilplant.control.records import RULES, Cascade, Controller, Neuron, Pid, Stages
+from hilplant.failure import Failure
 from hilplant.models.records import Motor
 
 Voltage = Annotated[float, Field(ge=0.0, le=20.0)]
@@ -80,7 +83,12 @@ class ControllerFile(Sourced):
     pid: PidSection | None = Field(default=None, description="PID control")
     neuron: NeuronSection | None = Field(default=None, description="single-neuron PID")
     cascade: CascadeSection | None = Field(default=None, description="cascade with load observer")
-    speed: Literal["sensor", "observer"] = Field(default="sensor", description="where the speed comes from")
+    speed: Literal["sensor", "observer", "network"] = Field(
+        default="sensor", description="where the speed comes from; network: section 7.5"
+    )
+    network: Annotated[SpeedNetworkFile, Referred(trained=True)] | None = Field(
+        default=None, description="file of the speed network, as `train estimator` writes it"
+    )
     adapting: Annotated[float, Field(ge=0.0, le=1.0)] = Field(
         default=0.0, description="part of each turn's error by which an observer corrects the resistance"
     )
@@ -94,6 +102,10 @@ class ControllerFile(Sourced):
         if len(laws) != 1:
             text = f"give one of pid, neuron and cascade, not {' and '.join(laws) or 'none'}"
             raise wrong(*laws[1:2], text=text)
+        if (self.speed == "network") != (self.network is not None):
+            raise wrong("speed", text="speed: network and network: FILE, which `train estimator` writes, go together")
+        if self.speed == "network" and self.cascade is not None:
+            raise wrong("speed", text="a cascade has its own observer; speed: network is for pid and neuron")
         if self.lowest_v >= self.highest_v:
             raise wrong("lowest_v", text=f"lowest_v must be below highest_v, which is {self.highest_v:g}")
         return self
@@ -104,16 +116,25 @@ class ControllerFile(Sourced):
         Raises
         ------
         Failure
-            For a cascade without a speed sensor at a period at which it oscillates.
+            For a cascade without a speed sensor at a period at which it oscillates, and for a speed network of
+            another motor.
 
         """
         made = self._law(motor, period_s)._replace(lowest_v=self.lowest_v, highest_v=self.highest_v)
-        if self.speed == "observer":
-            made = catalogue.sensorless(made, motor, "observer", self.adapting)
+        if self.network is not None and self.network.parameter_hash != motor_record_hash(motor):
+            text = f"its speed network was trained for the motor {self.network.motor}, not for this one; train it again"
+            raise Failure(f"controller {self.name}: {text}: hilplant train estimator BENCH")
+        if self.speed != "sensor":
+            made = catalogue.sensorless(made, motor, self.speed, self.adapting)
         if self.stages is None:
             return made
         ratio = motor.fast.constant_v_s / motor.slow.constant_v_s
         return made._replace(stages=Stages(self.stages.up_v, self.stages.back_v * ratio, self.stages.up_hold_s, ratio))
+
+    def tables(self) -> Tables:
+        """Return the arrays that the controller reads."""
+        plain = catalogue.without_network()
+        return plain if self.network is None else Tables(plain.gain, *self.network.paths())
 
     def _law(self, motor: Motor, period_s: float) -> Controller:
         if self.pid is not None:

@@ -9,8 +9,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hilplant.bench.controller_file import ControllerFile
+from hilplant.bench.speed_network_file import FORMAT
+from hilplant.checked_yaml.checksummed import flaw_of
 from hilplant.checked_yaml.reading import Reading
+from hilplant.checked_yaml.spot import NAMED
+from hilplant.checked_yaml.yaml_reader import Document, Location
 from hilplant.control.catalogue import SENSORLESS, catalogue, controller_named, with_stages, without_network
+from hilplant.control.controller import Tables
 from hilplant.control.own import Maker, OwnLoopSeat, OwnSeat, Watch
 from hilplant.control.records import Controller
 from hilplant.control.reference import Reference
@@ -45,7 +50,7 @@ def seat_on_bus(choice: ControllerChoice, driven: Driven) -> Seat | OwnSeat:
     maker = own_maker(choice.name)
     if maker is not None:
         return OwnSeat(maker, *driven, choice.reference, _watch(choice, driven))
-    return Seat(_shipped(choice.name, driven), without_network(), choice.reference)
+    return Seat(*_shipped(choice.name, driven), choice.reference)
 
 
 def seat_in_loop(choice: ControllerChoice, driven: Driven, parameter_row: Any) -> LoopSeat | OwnLoopSeat:
@@ -53,7 +58,7 @@ def seat_in_loop(choice: ControllerChoice, driven: Driven, parameter_row: Any) -
     maker = own_maker(choice.name)
     if maker is not None:
         return OwnLoopSeat(maker, *driven, choice.reference, _watch(choice, driven), parameter_row)
-    return LoopSeat(_shipped(choice.name, driven), without_network(), choice.reference, parameter_row)
+    return LoopSeat(*_shipped(choice.name, driven), choice.reference, parameter_row)
 
 
 def own_maker(name: str) -> Maker | None:
@@ -71,11 +76,12 @@ def own_maker(name: str) -> Maker | None:
     return partial(_made, name, next(iter(found)).load()) if found else None
 
 
-def _shipped(name: str, driven: Driven) -> Controller:
-    """Return a controller of a file, or of the catalogue with both brushes."""
+def _shipped(name: str, driven: Driven) -> tuple[Controller, Tables]:
+    """Return a controller of a file, or of the catalogue with both brushes, and the arrays that it reads."""
     file = shipped("config", "controllers", f"{name}.yaml")
     if name.endswith((".yaml", ".yml")) or file.is_file():
-        return controller_file(file if file.is_file() else Path(name)).controller(*driven)
+        written = controller_file(file if file.is_file() else Path(name))
+        return written.controller(*driven), written.tables()
     if name.removesuffix(SENSORLESS) not in catalogue(*driven):
         offered = sorted({entry.name for entry in entry_points(group=ENTRY_POINTS)})
         packages = f"; of packages {', '.join(offered)}" if offered else ""
@@ -84,7 +90,7 @@ def _shipped(name: str, driven: Driven) -> Controller:
             f"there is no controller {name!r}; there are {', '.join(catalogue(*driven))}, each also with {SENSORLESS}"
             f"{packages}; as files {files}; a file of yours ending .yaml; or module:function"
         )
-    return with_stages(controller_named(name, *driven), driven.motor)
+    return with_stages(controller_named(name, *driven), driven.motor), without_network()
 
 
 def controller_file(path: Path) -> ControllerFile:
@@ -98,11 +104,27 @@ def controller_file(path: Path) -> ControllerFile:
     """
     reading = Reading()
     document = reading.named_file(path)
+    _put_network(reading, document)
     found = reading.take(document, (), ControllerFile) if document.data is not None else None
     reading.raise_problems()
     if found is None:
         raise Failure(f"{path}: holds nothing; docs/control.md shows a controller's file")
     return found
+
+
+def _put_network(reading: Reading, document: Document) -> None:
+    """Put the speed network that a controller's file names where it is named."""
+    at: Location = ("network",)
+    if not isinstance(document.at(at), str):
+        return
+    path = reading.referred_path(document, at)
+    trouble = flaw_of(path, FORMAT) if path is not None else ""
+    read = reading.file(path) if path is not None and not trouble else trouble
+    if isinstance(read, Document):
+        document.put(at, read, NAMED)
+    elif read:
+        reading.note(document, at, f"'{document.at(at)}' {read}")
+    reading.raise_problems()
 
 
 def _imported(name: str) -> Maker:

@@ -86,8 +86,13 @@ def plot_fuzzy(path: Path) -> None:
     save(figure, path, 90)
 
 
-def plot_estimates(path: Path, time_s: Floats, speed_rad_s: Floats, estimates: Mapping[str, Floats]) -> None:
-    """Draw the true speed, what each estimator says, and the errors; as Figures 7-16 and 7-17."""
+def plot_estimates(
+    path: Path, time_s: Floats, speed_rad_s: Floats, estimates: Mapping[str, Floats], nominal: str = ""
+) -> None:
+    """Draw the true speed, what each estimator says, and the errors; as Figures 7-16 and 7-17.
+
+    `nominal` is the brush of a plant as the estimators believe it; without it, its resistance is 20 % off.
+    """
     figure, (top, bottom) = _figure(2, 5.5)
     top.plot(time_s[::5], speed_rad_s[::5], color="black", linewidth=0.9, label="true")
     widths = (2.2, 0.9, 0.7)  # network and observer lie upon each other
@@ -99,8 +104,8 @@ def plot_estimates(path: Path, time_s: Floats, speed_rad_s: Floats, estimates: M
     top.set_ylabel("crank speed [rad/s]")
     bottom.set_ylabel("error [rad/s]")
     bottom.set_ylim(-1.0, 1.0)
-    bottom.set_xlabel("time [s]; the plant's resistance is 20 % above the believed one")
-    figure.suptitle("Speed from voltage and current, slow brush, voltage from 3 to 20 V")
+    bottom.set_xlabel("time [s]" + ("" if nominal else "; the plant's resistance is 20 % above the believed one"))
+    figure.suptitle(f"Speed from voltage and current, {nominal or 'slow'} brush, voltage from 3 to 20 V")
     save(figure, path, 90)
 
 

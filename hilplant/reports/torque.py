@@ -15,6 +15,7 @@ from hilplant.models.load import LOADS
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.models.row import pack
 from hilplant.plots.training import plot_errors
+from hilplant.plots.training_data import plot_torque_fit
 from hilplant.progress import OnProgress, unseen
 from hilplant.reports.page import TrainingReport, markdown_table, write_page
 from hilplant.train.torque import TrainedTorque, TrainingPlan, data_of, train
@@ -61,6 +62,7 @@ def train_torque(bench_name: str, options: TorqueOptions, on_progress: OnProgres
     found = search(tried, bounds, extent, on_progress)
     figures = _torque_figures(content, trained, found, seconds)
     plot_errors(dense, folder / "torque_errors.png")
+    plot_torque_fit(data, trained, folder)
     page = write_page(folder, f"Torque network of the bench {bench.name}", _torque_sections(content, figures, dense))
     written = f"{path} and {page} written" + (", interrupted: the best so far" if trained.interrupted else "")
     return TrainingReport([*_torque_lines(figures), written], figures, found.beyond_bound == 0)
@@ -141,4 +143,6 @@ def _torque_sections(content: Figures, figures: Figures, dense: Dense) -> list[s
         f"Error against the physical load over a grid of {len(dense.states)} angles and speeds [N m]:",
         markdown_table(["screen", "mean", "RMS", "worst", "at angle [deg]", "at speed [rad/s]"], grid),
         "![torques and errors](torque_errors.png)",
+        "![training data, Figures 6-9 and 6-10](torque_training.png)",
+        "![separate validation, Figures 6-11 and 6-12](torque_validation.png)",
     ]

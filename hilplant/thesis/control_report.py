@@ -3,12 +3,12 @@
 import re
 from typing import Any
 
-from hilplant.thesis.control_estimation import ESTIMATORS, Case
 from hilplant.thesis.control_search import FoundGains
 from hilplant.thesis.control_study import OURS, Study
 from hilplant.thesis.control_test import Metrics
 from hilplant.thesis.control_thesis import ROWS, ThesisRow, factors, far_off
 from hilplant.thesis.text_table import Part, TextTable
+from hilplant.train.speed_estimates import ESTIMATORS, Case
 
 _TITLES = {
     "7-2": "Table 7-2: PID",

@@ -18,11 +18,11 @@ from hilplant.failure import Failure
 from hilplant.models.load import LOADS, REDUCED
 from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX
-from hilplant.thesis.control_estimation import CHANGES, OFF, Case, estimated, estimator_table, full_range
-from hilplant.thesis.control_network import Floats, record, trained_paths
 from hilplant.thesis.control_rain import Duty, controlled_duty, rain, two_speed_duty
 from hilplant.thesis.control_test import STATES, DriveRun, Metrics, SpeedProfile, metrics, run_drive, thesis_drive
 from hilplant.thesis.control_thesis import ROWS, Order, controller_of, orders
+from hilplant.train.speed_estimates import CHANGES, OFF, Case, estimated, estimator_table, full_range
+from hilplant.train.speed_network import Floats, record, trained_paths
 from hilplant.units import SECOND_NS
 
 #: Our own controllers, by their name in the catalogue.

@@ -13,7 +13,7 @@ from hilplant.control.design import ObserverNoise, armature, model
 from hilplant.control.network import network_speed
 from hilplant.control.observer import correct, learn_resistance, predict
 from hilplant.control.records import AT_REST, Measured, SpeedEstimate
-from hilplant.thesis.control_network import train, training_record
+from hilplant.train.speed_network import train, training_record
 from hilplant.units import TURN_RAD
 
 BENCH = load_bench("default")

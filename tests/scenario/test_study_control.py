@@ -19,13 +19,13 @@ from hilplant.control.records import Controller
 from hilplant.failure import Failure
 from hilplant.signals import OUTPUT_INDEX
 from hilplant.thesis import control_rain
-from hilplant.thesis.control_estimation import ESTIMATORS, Case, network_speeds
-from hilplant.thesis.control_network import train, training_record
 from hilplant.thesis.control_rain import LEAST_PER_MINUTE, MOST_PER_MINUTE, rain, two_speed_duty
 from hilplant.thesis.control_search import cost, search, source_gains
 from hilplant.thesis.control_study import Study, run_study, study_bench
 from hilplant.thesis.control_test import DriveRun, Metrics, metrics, run_drive, thesis_drive
 from hilplant.thesis.control_thesis import ROWS, compare_order, factors, far_off
+from hilplant.train.speed_estimates import ESTIMATORS, Case, network_speeds
+from hilplant.train.speed_network import train, training_record
 
 PICTURES = {
     "cascade", "error_hebb", "error_hebb_fuzzy", "fuzzy_sets", "hebb", "hebb_fuzzy", "pid", "quadratic",

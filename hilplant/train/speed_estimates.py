@@ -15,7 +15,7 @@ from hilplant.control.closed_loop import observe_rows
 from hilplant.control.design import armature, model
 from hilplant.jit import uninterrupted
 from hilplant.models.records import Brush, Motor, Parameters
-from hilplant.thesis.control_network import Floats, NetworkRecord, record
+from hilplant.train.speed_network import Floats, NetworkRecord, record
 
 OFF = 0.2
 ESTIMATORS = ("network", "observer", "observer, resistance adapting")
