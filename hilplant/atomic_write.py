@@ -97,8 +97,20 @@ def write_text(path: Path, text: str) -> None:
         When it cannot be written.
 
     """
+    write_bytes(path, text.encode())
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """Write bytes, whole or not at all.
+
+    Raises
+    ------
+    Failure
+        When it cannot be written.
+
+    """
     try:
         with whole_file(path) as passing:
-            passing.write_text(text, encoding="utf-8", newline="\n")
+            passing.write_bytes(content)
     except OSError as error:
         raise cannot_be_written(path, error) from error

@@ -27,7 +27,7 @@ LAYERS: dict[str, str] = {
     "bench": "bench",
     "server": "runtime ecu recording channel",
     "offline": "library c_source simulation measurements motor_bench identify train",
-    "results": "plots reports testing perf doctor demo",
+    "results": "plots reports testing perf doctor demo modelling",
     "thesis": "thesis",
     "top": "cli __init__ __main__",
 }
@@ -75,6 +75,7 @@ ARROWS: dict[str, str] = {
     "perf": f"{_OFFLINE} simulation c_source",
     "testing": f"{_OFFLINE} simulation plots",
     "doctor": "extras jit",
+    "modelling": (f"{_OFFLINE} simulation measurements identify train plots reports library web channel"),
     "demo": f"{_OFFLINE} plots",
     "thesis": f"{_OFFLINE} simulation measurements motor_bench identify train plots reports perf c_source",
     "__init__": "bench channel checked_yaml simulation",

@@ -43,6 +43,7 @@ OWN_PROGRAMS = {
     "channel/door.py",
     "perf/own_process.py",
     "measurements/mf4_process.py",
+    "modelling/job_process.py",
 }
 
 

@@ -1,0 +1,1 @@
+"""The modelling tool: a wiper described, seen, checked, identified and made into a bench."""

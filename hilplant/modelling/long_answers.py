@@ -1,0 +1,133 @@
+"""What the page asks for that takes long, or stays: recordings, identification, training, a run."""
+
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from hilplant.atomic_write import make_folder
+from hilplant.failure import Failure
+from hilplant.modelling.recordings import columns_of, cut, looked_at
+from hilplant.modelling.session import ModellingSession
+
+Asked = Mapping[str, Any]
+
+_OF_IDENTIFICATION = (
+    "columns", "frames", "hold", "also", "search", "generations", "population", "ordered", "seed", "resume", "date",
+)  # fmt: skip
+#: Trainings with their settings, those of the commands.
+_TRAININGS: dict[str, dict[str, Any]] = {
+    "torque": {"neurons": 10, "harmonics": 2, "starts": 10, "speeds_rad_s": [1, 3, 5, 7], "seed": 1, "scenarios": 200},
+    "motor": {"seed": 1, "scenarios": 2000},
+    "tables": {"bound": 1e-8},
+    "polynomial": {},
+}
+
+
+class LongAnswers:
+    """Recordings and jobs of a session."""
+
+    def __init__(self, session: ModellingSession) -> None:
+        """Take the session; `asked_for` has what can be asked for by its name."""
+        self._session = session
+        self.asked_for: dict[str, Callable[[Asked], Any]] = {
+            "recordings": lambda _: [{"name": path.name} for path in sorted(session.recordings.iterdir())],
+            "columns": lambda asked: columns_of(self._recording(asked["name"])),
+            "look": lambda asked: looked_at(self._recording(asked["name"]), asked["columns"], asked.get("mode")),
+            "cut": self._cut,
+            "identify": self._identify,
+            "train": self._train,
+            "job": lambda _: session.jobs.state,
+            "stop": self._stop,
+            "run": self._run,
+        }
+
+    def _refuse_problems(self) -> None:
+        if self._session.check().bench is None:
+            raise Failure("the model has problems; they are listed beside the text")
+
+    def identified_parts(self) -> dict[str, Any]:
+        """Return the parts that the last identification found.
+
+        Raises
+        ------
+        Failure
+            When none has come to its end.
+
+        """
+        state = self._session.jobs.state
+        if state["work"] != "identify" or state["state"] != "done":
+            raise Failure("no identification has come to its end")
+        return dict(state["answer"]["parts"])
+
+    def trained_files(self, asked: Asked) -> tuple[str | None, str | None]:
+        """Return the trained files of load and motor that are asked for; None for one that is not."""
+        found = [self._trained(work) if asked.get(work) else None for work in ("torque", "motor")]
+        return found[0], found[1]
+
+    def product(self, work: str, name: str) -> tuple[str, bytes]:
+        """Return a file that a training has written, with its name."""
+        path = self._session.work / "trained" / Path(work).name / Path(name).name
+        if not path.is_file():
+            raise Failure(f"there is no file {name}")
+        return path.name, path.read_bytes()
+
+    def _recording(self, name: Any) -> Path:
+        path = self._session.recordings / Path(str(name)).name
+        if not path.is_file():
+            raise Failure(f"there is no recording {name}")
+        return path
+
+    def _cut(self, asked: Asked) -> dict[str, str]:
+        span = float(asked["from_s"]), float(asked["to_s"])
+        return {"name": cut(self._recording(asked["name"]), span, asked["columns"], asked.get("mode")).name}
+
+    def _identify(self, asked: Asked) -> dict[str, Any]:
+        self._refuse_problems()
+        wanted = {key: asked[key] for key in _OF_IDENTIFICATION if key in asked}
+        for key in ("data", "held_out"):
+            wanted[key] = [self._named(each) for each in asked.get(key, [])]
+        if not wanted["data"]:
+            raise Failure("choose at least one recording")
+        out = make_folder(self._session.work / "identified") / "identified.yaml"
+        wanted |= {"bench": str(self._session.laid_out("to_identify")), "out": str(out)}
+        self._session.jobs.start("identify", wanted)
+        return self._session.jobs.state
+
+    def _named(self, chosen: Any) -> str:
+        words = [word for word in (chosen.get("screen"), chosen.get("mode")) if word]
+        return f"{self._recording(chosen['name'])}@{','.join(words)}" if words else str(self._recording(chosen["name"]))
+
+    def _train(self, asked: Asked) -> dict[str, Any]:
+        self._refuse_problems()
+        work = str(asked["what"])
+        if work not in _TRAININGS:
+            raise Failure(f"there is no training of {work}; there are {', '.join(_TRAININGS)}")
+        out = make_folder(self._session.work / "trained" / work)
+        order = _TRAININGS[work] | {key: asked[key] for key in _TRAININGS[work] if key in asked}
+        bench = str(self._session.laid_out("to_train"))
+        self._session.jobs.start(work, order | {"bench": bench, "out": str(out)})
+        return self._session.jobs.state
+
+    def _trained(self, work: str) -> str:
+        path = self._session.work / "trained" / work / f"{work}.yaml"
+        if not path.is_file():
+            raise Failure(f"no {work} network was trained here yet")
+        return str(path)
+
+    def _stop(self, _: Asked) -> dict[str, Any]:
+        self._session.jobs.stop()
+        return self._session.jobs.state
+
+    def _run(self, asked: Asked) -> dict[str, str]:
+        """Start the bench that was saved, with the operator's page; the run goes on when this page is closed."""
+        model = self._session.model
+        if not model.is_saved or model.folder is None:
+            raise Failure("save the bench first: a run reads it from its folder")
+        self._refuse_problems()
+        path = model.folder / model.bench
+        command = [sys.executable, "-m", "hilplant", "run", str(path), *map(str, asked.get("options", []))]
+        log = (self._session.work / "run.log").open("wb")
+        subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)
+        return {"command": f"hilplant run {path}", "log": str(self._session.work / "run.log")}

@@ -1,0 +1,130 @@
+"""What takes long, orders in and figures out: identification in its stages, and training, as the commands do them."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from hilplant.identify.from_files import IdentifiedFiles, Request, figures, identify_files
+from hilplant.identify.three_stages import Identified
+from hilplant.identify.validation import Comparison, unexplained
+from hilplant.modelling.recordings import thinned
+from hilplant.progress import OnProgress
+from hilplant.reports.page import TrainingReport
+
+Order = dict[str, Any]
+Answer = dict[str, Any]
+
+
+def identified(order: Order, on_progress: OnProgress) -> Answer:
+    """Identify from recordings; the order's keys are those of :class:`Request`."""
+    wanted: Any = {name: tuple(value) if isinstance(value, list) else value for name, value in order.items()}
+    done = identify_files(Request(**wanted | {"out": Path(order["out"])}), on_progress)
+    found = done.found
+    done.journal.remove()
+    return {
+        "figures": figures(found),
+        "parameters": _parameters(found),
+        "history": [each._asdict() for each in found.outcome.history],
+        "compared": [_compared(each, "fitted") for each in found.fitted]
+        + [_compared(each, "held out") for each in found.held_out],
+        "unexplained": unexplained(found.fitted),
+        "advice": [f"{', '.join(hint.tells)}: {hint.text}" for hint in found.advice],
+        "notes": done.notes,
+        "parts": _parts(done),
+    }  # fmt: skip
+
+
+def _parameters(found: Identified) -> list[Answer]:
+    """Return before, found and interval of each parameter; None for a side that is open."""
+    withheld = bool(unexplained(found.fitted))
+    rows = zip(found.verdicts, found.intervals, found.task.choice.parameters, found.task.choice.values, strict=True)
+    return [
+        {"name": verdict.name, "unit": parameter.unit, "before": float(before), "found": float(verdict.value),
+         "identifiable": bool(verdict.identifiable), "withheld": withheld, "low": interval.low, "high": interval.high,
+         "together": list(verdict.together)}
+        for verdict, interval, parameter, before in rows
+    ]  # fmt: skip
+
+
+def _compared(each: Comparison, role: str) -> Answer:
+    rows = thinned(len(each.run.current_a))
+    return {
+        "name": each.error.name,
+        "role": role,
+        "rms_current_a": each.error.rms_current_a,
+        "noise_a": each.error.noise_a,
+        "time_s": rows * each.run.period_s,
+        "measured_a": each.run.current_a[rows],
+        "simulated_a": each.simulated_a[rows],
+    }
+
+
+def _parts(done: IdentifiedFiles) -> Answer:
+    """Return what was written for motor, screen and blades, as data."""
+    motor, screen, bench = (yaml.safe_load(path.read_text(encoding="utf-8")) for path in done.written)
+    return {"motor": motor, "screen": screen, "blades": bench["plant"].get("blades", {})}
+
+
+def trained_torque(order: Order, on_progress: OnProgress) -> Answer:
+    """Train the torque network, section 6.4.2."""
+    from hilplant.reports.torque import TorqueOptions, train_torque
+
+    options = TorqueOptions(
+        int(order["neurons"]), int(order["harmonics"]), int(order["starts"]), tuple(order["speeds_rad_s"]),
+        int(order["seed"]), int(order["scenarios"]), Path(order["out"]),
+    )  # fmt: skip
+    return _report(train_torque(order["bench"], options, on_progress), order)
+
+
+def trained_motor(order: Order, on_progress: OnProgress) -> Answer:
+    """Train the motor network, section 6.4.3."""
+    from hilplant.reports.motor import report_motor
+
+    made = report_motor(order["bench"], int(order["seed"]), int(order["scenarios"]), Path(order["out"]), on_progress)
+    return _report(made, order)
+
+
+def tabulated(order: Order, _: OnProgress) -> Answer:
+    """Tabulate the kinematics, section 6.2."""
+    from hilplant.reports.kinematic_tables import train_tables
+
+    return _report(train_tables(order["bench"], float(order["bound"]), Path(order["out"])), order)
+
+
+def fitted_polynomial(order: Order, _: OnProgress) -> Answer:
+    """Fit the no-load torque, section 6.3."""
+    from hilplant.reports.polynomial import train_polynomial
+
+    return _report(train_polynomial(order["bench"], Path(order["out"])), order)
+
+
+def _report(made: TrainingReport, order: Order) -> Answer:
+    files = sorted(path.name for path in Path(order["out"]).iterdir() if path.is_file())
+    return {"lines": made.lines, "figures": made.figures, "kept": made.kept, "files": files}
+
+
+WORKS: dict[str, Callable[[Order, OnProgress], Answer]] = {
+    "identify": identified,
+    "torque": trained_torque,
+    "motor": trained_motor,
+    "tables": tabulated,
+    "polynomial": fitted_polynomial,
+}
+
+
+def plain(value: Any) -> Any:
+    """Return an answer as JSON takes it; what is no number becomes None."""
+    if isinstance(value, dict):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(inner) for inner in value]
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float):
+        return value if np.isfinite(value) else None
+    return str(value) if isinstance(value, Path) else value
