@@ -44,7 +44,7 @@ class Transport(Protocol):
         """Hand a frame over to the interface."""
 
     def reopen(self) -> bool:
-        """Try once to make a lost interface work again; say whether it does."""
+        """Try once to make a lost interface work again; say whether it does; what takes longer goes on beside."""
 
     def close(self) -> None:
         """Give the interface back."""

@@ -85,7 +85,9 @@ class Node:
 
         At most `frames_per_tick` frames are taken, a quarter of them to `shed` load; the rest waits in the interface.
         """
-        if not self._transport.up:
+        if self._transport.up:
+            self._was_up = True
+        else:
             self._reopen(now_ns)
         limit = self._settings.frames_per_tick
         limit = max(1, limit // 4) if shed else limit
@@ -253,7 +255,6 @@ class Node:
             self._reopen_ns = now_ns + self._reopen_pause_ns
         elif now_ns >= self._reopen_ns:
             if self._transport.reopen():
-                self._was_up = True
                 return
             self._reopen_pause_ns = min(2 * self._reopen_pause_ns, self._settings.reopen_longest_ns)
             self._reopen_ns = now_ns + self._reopen_pause_ns

@@ -6,6 +6,8 @@ interface that python-can knows is driven through it, polled, without its thread
 
 import contextlib
 import logging
+import os
+import threading
 from typing import Any
 
 from hilplant.bus.arrival import waited_ns
@@ -61,10 +63,17 @@ class PythonCan:
         self._arguments = dict(arguments)
         self._bus = _open(self._arguments)
         self._up = True
+        self._reopening: _Reopening | None = None
 
     @property
     def up(self) -> bool:
         """Whether frames can pass."""
+        if self._reopening is not None and self._reopening.done:
+            self._bus, self._up, self._reopening = (
+                self._reopening.bus or self._bus,
+                self._reopening.bus is not None,
+                None,
+            )
         return self._up
 
     @property
@@ -109,18 +118,41 @@ class PythonCan:
         return SendResult.SENT
 
     def reopen(self) -> bool:
-        """Try once with a new bus object."""
-        self.close()
-        with contextlib.suppress(TransportError):
-            self._bus = _open(self._arguments)
-            self._up = True
+        """Have a new bus object tried beside the loop, which a driver may keep waiting; `up` tells when it works."""
+        if not self.up and self._reopening is None:
+            self._reopening = _Reopening(self._bus, self._arguments)
+            self._reopening.start()
         return self._up
 
     def close(self) -> None:
-        """Shut the bus down."""
+        """Shut the bus down; one that is only just being opened is left to the end of the process."""
+        if self.up:
+            _shut(self._bus)
         self._up = False
-        with contextlib.suppress(Exception):
-            self._bus.shutdown()
+
+
+class _Reopening(threading.Thread):
+    """Shuts a bus down and opens it anew, once; `bus` is the new one when `done`, None where that failed."""
+
+    def __init__(self, old: can.BusABC, arguments: dict[str, Any]) -> None:
+        super().__init__(daemon=True, name="reopen")
+        self.done = False
+        self.bus: can.BusABC | None = None
+        self._old, self._arguments = old, arguments
+
+    def run(self) -> None:
+        """Do it, at an ordinary priority: a thread inherits that of the loop."""
+        with contextlib.suppress(OSError, AttributeError):  # only Linux has it
+            os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+        _shut(self._old)
+        with contextlib.suppress(TransportError):
+            self.bus = _open(self._arguments)
+        self.done = True
+
+
+def _shut(bus: can.BusABC) -> None:
+    with contextlib.suppress(Exception):  # drivers raise whatever their libraries raise
+        bus.shutdown()
 
 
 def _open(arguments: dict[str, Any]) -> can.BusABC:

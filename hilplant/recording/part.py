@@ -1,6 +1,7 @@
 """One file of a recording, written block by block and watched: that it is still there, and still what was written."""
 
 import contextlib
+import fcntl
 import io
 import os
 from pathlib import Path
@@ -33,6 +34,8 @@ class Part:
         self.written = 0
         self.blocks = 0
         self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND | os.O_CLOEXEC, 0o600)
+        with contextlib.suppress(OSError):  # not every file system has locks
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)  # against `rotation.remove_part` of another run
         self._sink = io.BytesIO()
         options = pa.ipc.IpcWriteOptions(compression="zstd")
         try:

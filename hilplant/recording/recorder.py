@@ -8,7 +8,7 @@ import select
 import subprocess
 import sys
 import threading
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import IO
@@ -96,7 +96,8 @@ def start_recorder(
     Parameters
     ----------
     path
-        The file, or the name of its parts; a folder that is there gets one by the bench and the time of day.
+        The file, or the name of its parts; a folder that is there gets one by the bench and the time of day, and the
+        parts that were recorded there so before count among those that are kept.
     loop_cpu
         The CPU that the recorder keeps clear of.
 
@@ -105,9 +106,12 @@ def start_recorder(
     Failure
         When the file exists already or cannot be written, or its ending is that of another format.
     """
-    start_utc = datetime.now(UTC)
-    path = path / _name(bench.name, start_utc) if path.is_dir() else path
-    return _start(ring, path, describe(bench, start_utc), loop_cpu, rotation or Rotation())
+    start_utc, rotation = datetime.now(UTC), rotation or Rotation()
+    if path.is_dir():
+        if rotation.keep:
+            rotation = replace(rotation, earlier=_earlier(path, bench.name))
+        path = path / _name(bench.name, start_utc)
+    return _start(ring, path, describe(bench, start_utc), loop_cpu, rotation)
 
 
 def description_now(bench: RecordedBench) -> dict[str, str]:
@@ -162,9 +166,19 @@ def _start(
     return Recorder(child, ring, path)
 
 
+def _word(bench: str) -> str:
+    return re.sub(r"[^\w.]+", "-", bench).strip("-.") or "run"
+
+
+def _earlier(folder: Path, bench: str) -> tuple[str, ...]:
+    """Return the parts that were recorded to a folder by the bench's name, the oldest first."""
+    named = re.compile(rf"{re.escape(_word(bench))}-(\d{{8}}T\d{{6}}\.\d{{3}})Z-(\d{{4,}})\.hilrec")
+    found = [(match[1], int(match[2]), str(path)) for path in folder.iterdir() if (match := named.fullmatch(path.name))]
+    return tuple(path for _, _, path in sorted(found))
+
+
 def _name(bench: str, start_utc: datetime) -> str:
-    word = re.sub(r"[^\w.]+", "-", bench).strip("-.") or "run"
-    return f"{word}-{start_utc:%Y%m%dT%H%M%S}.{start_utc.microsecond // 1000:03d}Z.hilrec"
+    return f"{_word(bench)}-{start_utc:%Y%m%dT%H%M%S}.{start_utc.microsecond // 1000:03d}Z.hilrec"
 
 
 def _free(path: Path, rotation: Rotation) -> Path:

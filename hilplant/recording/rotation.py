@@ -1,5 +1,7 @@
 """A recording in parts: when one ends and the next begins, what they are called, and how many are kept."""
 
+import contextlib
+import fcntl
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,11 +21,15 @@ _SMALLEST_BYTES = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class Rotation:
-    """The limits of a part, 0 where there is none: its bytes, the time [ns] it spans, how many parts are kept."""
+    """The limits of a part, 0 where there is none: its bytes, the time [ns] it spans, how many parts are kept.
+
+    `earlier` are parts of runs before this one, the oldest first, which count among those that are kept.
+    """
 
     part_bytes: int = 0
     part_ns: int = 0
     keep: int = 0
+    earlier: tuple[str, ...] = ()
 
     @property
     def in_parts(self) -> bool:
@@ -64,7 +70,7 @@ class Rotation:
     @classmethod
     def from_json(cls, values: Mapping[str, Any]) -> "Rotation":
         """Build from what :func:`dataclasses.asdict` gave."""
-        return cls(**values)
+        return cls(**{**values, "earlier": tuple(values["earlier"])})
 
 
 def part_path(path: Path, number: int) -> Path:
@@ -80,6 +86,13 @@ def parts_of(path: Path) -> list[Path]:
         if number is not None and found.stem[: number.start()] == path.stem and found.suffix == path.suffix:
             numbered.append((int(number[1]), found))
     return [found for _, found in sorted(numbered)]
+
+
+def remove_part(path: Path) -> None:
+    """Remove a part, unless it is gone, may not be removed, or somebody records to it."""
+    with contextlib.suppress(OSError), path.open("rb") as file:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        path.unlink()
 
 
 def _literal(text: str) -> str:

@@ -10,7 +10,7 @@ from hilplant.models.records import STATE_INDEX
 from hilplant.recording.format import CHECKSUM_KEY, LOST_KEY, SIGNAL_COLUMNS, STATE_KEY, batch, checksum, state_text
 from hilplant.recording.metadata import Begin, parameters_of, part_description
 from hilplant.recording.part import Part
-from hilplant.recording.rotation import Rotation, part_path
+from hilplant.recording.rotation import Rotation, part_path, remove_part
 from hilplant.runtime.commands import APPLIED, COMMAND_DTYPE, PARAMETER
 from hilplant.runtime.ring import FRAME_DTYPE, Ring
 
@@ -60,7 +60,7 @@ class RecordingWriter:
         self._metadata = metadata
         self._rotation = rotation or Rotation()
         self._number = 1
-        self._kept: deque[Path] = deque()
+        self._kept = deque(Path(earlier) for earlier in self._rotation.earlier)
         self._rows = [np.empty((0, row_width))]
         self._frames = [np.empty(0, FRAME_DTYPE)]
         self._events = [_NO_EVENTS]
@@ -161,13 +161,13 @@ class RecordingWriter:
         self._number += 1
         begin = Begin(int(rows[0, 0]), int(rows[0, 1]), rows[0, _STATE], self._parameters)
         self._part = self._open(part_description(self._metadata, self._number, begin))
-        while self._rotation.keep and len(self._kept) > self._rotation.keep:
-            self._kept.popleft().unlink(missing_ok=True)
 
     def _open(self, metadata: dict[str, str]) -> Part:
         path = part_path(self._path, self._number) if self._rotation.in_parts else self._path
         part = Part(path, metadata)
         self._kept.append(path)
+        while self._rotation.keep and len(self._kept) > self._rotation.keep:
+            remove_part(self._kept.popleft())
         return part
 
 

@@ -78,8 +78,12 @@ def real_time(priority: int, cpu: int | None) -> Iterator[list[Privilege]]:
 
 
 def stand_back(loop_cpu: int | None) -> None:
-    """Leave, as a process beside the loop, the signals of the terminal, the priority and the CPU to the loop."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    """Leave, as a process beside the loop, the signals of the terminal, the priority and the CPU to the loop.
+
+    Those of a service manager too, which sends SIGABRT to all of a service whose loop hangs: the recorder shall still
+    write what is in the ring.
+    """
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGABRT):
         signal.signal(number, signal.SIG_IGN)
     with contextlib.suppress(OSError, AttributeError):  # only Linux has them all
         os.nice(5)

@@ -1,8 +1,10 @@
 """python-can behind the transport: its virtual interface for real, its failures by stand-ins."""
 
 import logging
+import os
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -125,10 +127,44 @@ def test_a_device_that_is_gone_is_down_until_it_can_be_opened_again(
         patch.setattr(can, "Bus", lambda **_: BrokenBus(error).recv(0))
         assert not transport.reopen()
         assert transport.receive(5) == []
-    assert transport.reopen()
+        ended()
+        assert not transport.up
+    assert not transport.reopen()
+    ended()
     assert transport.up
     transport.close()
     assert not transport.up
+
+
+def test_a_driver_that_takes_its_time_to_open_keeps_nobody_waiting(monkeypatch: pytest.MonkeyPatch) -> None:
+    transport = PythonCan(ARGUMENTS)
+    driver, tries, may_open = can.Bus, [], threading.Event()
+
+    def slow(**arguments: Any) -> can.BusABC:
+        tries.append(os.sched_getscheduler(0))
+        may_open.wait(60.0)
+        return driver(**arguments)
+
+    monkeypatch.setattr(can, "Bus", slow)
+    monkeypatch.setattr(transport, "_bus", BrokenBus(OSError("unplugged")))
+    assert transport.receive(5) == []
+    for _ in range(3):
+        assert not transport.reopen()
+        assert (transport.receive(5), transport.send(Frame(1, b"")), transport.up) == ([], SendResult.DOWN, False)
+    may_open.set()
+    ended()
+    assert transport.up
+    assert transport.reopen()
+    assert tries == [os.SCHED_OTHER], "one try at a time, at an ordinary priority"
+    assert transport.send(Frame(1, b"")) is SendResult.SENT
+    transport.close()
+
+
+def ended() -> None:
+    """Wait until no interface is being opened."""
+    for thread in threading.enumerate():
+        if thread.name == "reopen":
+            thread.join(60.0)
 
 
 def test_what_python_can_logs_stands_in_the_one_line(

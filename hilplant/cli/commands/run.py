@@ -31,7 +31,7 @@ def run(  # noqa: PLR0913, PLR0917
         Path | None, typer.Option(help="record every tick and every frame to this file, or to a new one in this folder")
     ] = None,
     rotate: Annotated[str | None, typer.Option(help="record in parts of this size or time: 100MB, 1h, or both")] = None,
-    keep: Annotated[int | None, typer.Option(min=1, help="keep this many parts, the newest")] = None,
+    keep: Annotated[int | None, typer.Option(min=1, help="keep this many parts, the newest of all starts")] = None,
     channel: Channel = None,
     controller: Annotated[str | None, typer.Option(help="a velocity controller inside the loop")] = None,
     reference: Annotated[

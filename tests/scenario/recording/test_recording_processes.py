@@ -1,5 +1,6 @@
 """The recorder is a process of its own: what each of the two loses when the other, or itself, is killed."""
 
+import fcntl
 import os
 import resource
 import select
@@ -17,6 +18,7 @@ from hilplant.failure import Failure
 from hilplant.recording.reader import read_recording
 from hilplant.recording.recorder import Recorder, start_recorder
 from hilplant.recording.replay import replay
+from hilplant.recording.rotation import Rotation, parts_of
 from hilplant.runtime.ring import Ring
 
 DAEMON = """
@@ -83,11 +85,30 @@ def test_the_recorder_ignores_the_signals_meant_for_the_daemon(run: Any, tmp_pat
     path = tmp_path / "run.hilrec"
     recorder = start_recorder(run.ring, path, run.bench)
     run.go(100)
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGABRT):
         os.kill(recorder.pid, number)
     run.go(100)
     recorder.finish()
     assert len(read_recording(path).table()) == 200
+
+
+def test_in_a_folder_parts_of_earlier_starts_count_among_those_that_are_kept(run: Any, tmp_path: Path) -> None:
+    """None but parts of the same bench in that folder, and none that somebody still records to."""
+    spared = [tmp_path / "small-bench-20260101T000000.000Z.hilrec", tmp_path / "small-bench-2-0001.hilrec"]
+    old = [tmp_path / f"small-bench-20260101T000000.000Z-{number:04d}.hilrec" for number in (1, 2, 3, 10)]
+    other = tmp_path / "small-benches-20260101T000000.000Z-0001.hilrec"
+    for path in (*spared, *old, other):
+        path.write_text("")
+    with old[1].open("rb") as busy:
+        fcntl.flock(busy, fcntl.LOCK_EX)
+        recorder = start_recorder(run.ring, tmp_path, run.bench, rotation=Rotation(part_ns=1_000_000_000, keep=3))
+        assert not old[0].exists()
+        run.go(2500)
+        recorder.finish()
+    parts = parts_of(recorder.path)
+    assert sorted(tmp_path.iterdir()) == sorted([*spared, other, old[1], *parts])
+    assert [part.stem[-4:] for part in parts] == ["0001", "0002", "0003"]
+    assert replay(recorder.path).ticks == 2500
 
 
 def test_a_file_that_is_there_already_is_left_alone(run: Any, tmp_path: Path) -> None:
