@@ -1,4 +1,4 @@
-"""How far something long has come: what a room reports; the command line shows it."""
+"""How far something long has come: what a room reports; the command line shows it, a page may stop it."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -13,7 +13,15 @@ class ProgressReport(NamedTuple):
     note: str = ""
 
 
+#: Hears of each report; it may raise :class:`Stopped`, which ends what is going on.
 OnProgress = Callable[[ProgressReport], None]
+
+
+class Stopped(KeyboardInterrupt):
+    """Raised by a callback to end what is going on, as Ctrl-C does.
+
+    A training ends with the best so far; an identification leaves its journal, from which `resume` goes on.
+    """
 
 
 def unseen(_: ProgressReport) -> None:

@@ -28,6 +28,9 @@ DataNames = Annotated[
         metavar="DATA...",
     ),
 ]
+DataName = Annotated[
+    str, typer.Argument(help="a recording, FILE, FILE@dry or FILE@wet, with ,slow or ,fast behind", metavar="DATA")
+]
 BenchOption = Annotated[str, typer.Option("--bench", help="a bench file, or the name of a shipped bench")]
 Columns = Annotated[str, typer.Option(help="role=NAME[unit],...: time, voltage, current, park, fast, on")]
 Frames = Annotated[str | None, typer.Option(help="bus database, or bench, that reads a log of CAN frames")]

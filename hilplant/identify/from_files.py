@@ -15,13 +15,15 @@ from hilplant.identify.experiment import Run
 from hilplant.identify.genetic import SearchSettings
 from hilplant.identify.journal import Journal
 from hilplant.identify.optimisers import optimiser
-from hilplant.identify.parameters import BY_NAME, Choice, chosen
-from hilplant.identify.result_files import ResultOrigin, write_bench
+from hilplant.identify.parameters import BY_NAME, Choice, chosen, of_the_wiper
+from hilplant.identify.result_files import ResultOrigin, write_bench, write_partly
 from hilplant.identify.run_of_data import make_run
+from hilplant.identify.stages import ALL, LEAST_SQUARES, TRANSFER_FUNCTION, StagedValues
 from hilplant.identify.starting_point import StartingPoint, starting_point
-from hilplant.identify.three_stages import Identified, Task, identify
+from hilplant.identify.three_stages import Identified, Task, has_wiper, identify, identify_partly
 from hilplant.measurements.measurement import Samples
 from hilplant.measurements.named_data import Named, read_named
+from hilplant.models.load import LOADS
 from hilplant.progress import OnProgress, unseen
 
 
@@ -45,6 +47,7 @@ class Request:
     resume: bool = False
     dask: str | None = None
     date: str = ""
+    stages: tuple[int, ...] = ALL
 
 
 class IdentifiedFiles(NamedTuple):
@@ -53,7 +56,8 @@ class IdentifiedFiles(NamedTuple):
     `notes` are what there is to say of the data; `journal` is to be removed when all that is wanted has been written.
     """
 
-    found: Identified
+    found: Identified | StagedValues
+    task: Task
     known: StartingPoint
     origin: ResultOrigin
     notes: list[str]
@@ -66,12 +70,12 @@ def identify_files(request: Request, on_progress: OnProgress = unseen) -> Identi
     bench = load_bench(request.bench)
     optimiser(request.search)
     settings = _settings(request)
+    _refuse_other_load(bench, request.bench)
     base, held = _held(bench, request.hold)
-    choice = chosen(base, request.also, held)
+    choice = chosen(base, request.also, [*held, *(of_the_wiper() if not has_wiper(bench) else ())])
     reading = request.columns, request.frames
     fitted, held_out = (read_named(names, *reading) for names in (request.data, request.held_out))
-    _refuse_missing_load(bench, request.bench)
-    known = starting_point([named.data for named in fitted], choice, bench.parameters.motor.gear_ratio)
+    known = _starting_point(request, fitted, choice, bench.parameters.motor.gear_ratio)
     journal = Journal(_journal_path(request.out), _identity(request, bench, [*fitted, *held_out]), request.resume)
     with ExitStack() as open_things:
         executor: Executor = here
@@ -79,14 +83,24 @@ def identify_files(request: Request, on_progress: OnProgress = unseen) -> Identi
             executor = open_things.enter_context(on_cluster(request.dask))
         task = Task(
             bench, _runs(fitted, bench), choice, known.values, _runs(held_out, bench), settings, request.seed,
-            request.search, request.ordered, executor, journal.answering, on_progress,
+            request.search, request.ordered, executor, journal.answering, on_progress, request.stages,
         )  # fmt: skip
-        found = identify(task)
+        found = identify(task) if LEAST_SQUARES in request.stages else identify_partly(task)
     fitted_files, held_files = (tuple((each.text, each.data) for each in named) for named in (fitted, held_out))
     origin = ResultOrigin(fitted_files, held_files, request.date, request.seed, request.search)
-    written = write_bench(request.out, found, origin)
+    if isinstance(found, Identified):
+        written = write_bench(request.out, found, origin)
+    else:
+        written = write_partly(request.out, task, found, origin)
     notes = [note for named in fitted for note in named.notes] + list(known.notes)
-    return IdentifiedFiles(found, known, origin, notes, written, journal)
+    return IdentifiedFiles(found, task, known, origin, notes, written, journal)
+
+
+def _starting_point(request: Request, fitted: list[Named], choice: Choice, gear_ratio: float) -> StartingPoint:
+    """Ask stage 1 where it is wanted; else everything begins at what the bench says."""
+    if TRANSFER_FUNCTION not in request.stages:
+        return StartingPoint(choice.values, {}, ("stage 1 was left out: the search begins about the bench's values",))
+    return starting_point([named.data for named in fitted], choice, gear_ratio)
 
 
 def _settings(request: Request) -> SearchSettings:
@@ -112,11 +126,12 @@ def _held(bench: Bench, texts: tuple[str, ...]) -> tuple[Samples, list[str]]:
     return row, names
 
 
-def _refuse_missing_load(bench: Bench, name: str) -> None:
-    from hilplant.models.load import REDUCED
-
-    if bench.parameters.load.model != REDUCED:
-        raise Failure(f"{name}: identification finds the friction of blades; plant: load: must be {{model: reduced}}")
+def _refuse_other_load(bench: Bench, name: str) -> None:
+    if not has_wiper(bench) and LOADS[int(bench.parameters.load.model)] != "none":
+        raise Failure(
+            f"{name}: identification finds the friction of blades, or a motor alone; plant: load: must be "
+            "{model: reduced} or {model: none}"
+        )
 
 
 def _runs(named: list[Named], bench: Bench) -> list[Run]:
@@ -135,8 +150,18 @@ def _identity(request: Request, bench: Bench, named: list[Named]) -> str:
         for values in (each.data.voltage_v, each.data.current_a, each.data.park, each.data.fast):
             digest.update(values.tobytes())
     choices = (request.hold, request.also, request.search, request.generations, request.population, request.ordered)
-    digest.update(repr((choices, request.seed)).encode())
+    digest.update(repr((choices, request.seed, request.stages)).encode())
     return digest.hexdigest()
+
+
+def partial_figures(task: Task, found: StagedValues) -> dict[str, Any]:
+    """Return the numbers of some stages for a JSON file."""
+    flat: dict[str, Any] = {"cost": found.cost, "seconds": found.seconds, "stages": list(task.stages)}
+    flat |= dict(zip(task.choice.names, found.values.tolist(), strict=True))
+    for role, compared in (("fitted", found.fitted), ("held_out", found.held_out)):
+        for index, comparison in enumerate(compared, 1):
+            flat[f"{role}_{index}_rms_current_a"] = comparison.error.rms_current_a
+    return flat
 
 
 def figures(found: Identified) -> dict[str, Any]:

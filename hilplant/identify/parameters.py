@@ -179,6 +179,11 @@ def chosen(base_row: Samples, extra: Sequence[str] = (), held: Sequence[str] = (
     return Choice([BY_NAME[name] for name in dict.fromkeys(names) if name not in held], base_row)
 
 
+def of_the_wiper() -> list[str]:
+    """Return the names of those that a motor alone does not have: friction and force of the blades."""
+    return [parameter.name for parameter in (*_FRICTION, _FORCE)]
+
+
 def search_space(choice: Choice, about: Samples) -> tuple[Samples, Samples]:
     """Return the lowest and highest values by (5.22) about what is known, `about`.
 

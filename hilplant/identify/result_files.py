@@ -9,7 +9,8 @@ import yaml
 from hilplant import resources
 from hilplant.atomic_write import write_text
 from hilplant.bench import Bench
-from hilplant.identify.three_stages import Identified
+from hilplant.identify.stages import ALL, StagedValues
+from hilplant.identify.three_stages import Identified, Task, has_wiper
 from hilplant.measurements.measurement import Measurement, Samples
 from hilplant.models.records import Motor, Parameters
 from hilplant.models.row import unpack
@@ -27,17 +28,24 @@ class ResultOrigin(NamedTuple):
 
 def write_bench(out: Path, found: Identified, origin: ResultOrigin) -> list[Path]:
     """Write OUT.yaml, OUT.motor.yaml and OUT.screen.yaml; they are said to be identified, with intervals."""
-    bench = found.task.bench
-    record = unpack(Parameters, found.row)
+    return _write(out, found.task.bench, found.row, _facts(found, origin))
+
+
+def write_partly(out: Path, task: Task, found: StagedValues, origin: ResultOrigin) -> list[Path]:
+    """Write the same files for what some stages found, without intervals; they say which stages."""
+    facts = _head(task, found.cost, origin) | {"stages": list(task.stages), "not_told": list(task.choice.names)}
+    return _write(out, task.bench, found.row, facts)
+
+
+def _write(out: Path, bench: Bench, row: Samples, facts: dict[str, Any]) -> list[Path]:
+    record = unpack(Parameters, row)
     stem = out.with_suffix("")
     motor, screen = stem.with_name(f"{stem.name}.motor.yaml"), stem.with_name(f"{stem.name}.screen.yaml")
-    facts = _facts(found, origin)
-    written = {
-        motor: _motor(stem.name, record.motor, facts),
-        screen: _screen(bench, stem.name, found.row, facts),
-        out: _bench(bench, out, (motor.name, screen.name), found.row),
-    }
-    head = f"# Identified from measurements, {origin.date}; `identified` says from which, and how sure it is.\n"
+    written: dict[Path, dict[str, Any]] = {motor: _motor(stem.name, record.motor, facts)}
+    if has_wiper(bench):
+        written[screen] = _screen(bench, stem.name, row, facts)
+    written[out] = _bench(bench, out, [path.name for path in written], row)
+    head = f"# Identified from measurements, {facts['date']}; `identified` says from which, and how sure it is.\n"
     for path, data in written.items():
         write_text(path, head + yaml.safe_dump(_plain(data), sort_keys=False, allow_unicode=True, width=120))
     return list(written)
@@ -46,17 +54,10 @@ def write_bench(out: Path, found: Identified, origin: ResultOrigin) -> list[Path
 def _facts(found: Identified, origin: ResultOrigin) -> dict[str, Any]:
     """Return what the files carry beside their numbers."""
     left = found.solution.noise
-    facts: dict[str, Any] = {
-        "date": origin.date,
-        "data": _files(origin.fitted),
-        "held_out": _files(origin.held_out),
-        "bench": found.task.bench.name,
-        "search": origin.search,
-        "seed": origin.seed,
-        "cost": found.final_cost,
-        "rms_current_a": left.current_a,
-        "rms_park_edge_s": left.edge_s,
-    }
+    facts = _head(found.task, found.final_cost, origin)
+    facts |= {"rms_current_a": left.current_a, "rms_park_edge_s": left.edge_s}
+    if found.task.stages != ALL:
+        facts["stages"] = list(found.task.stages)
     facts["intervals_95"] = {
         verdict.name: [interval.low, interval.high]
         for verdict, interval in zip(found.verdicts, found.intervals, strict=True)
@@ -64,6 +65,18 @@ def _facts(found: Identified, origin: ResultOrigin) -> dict[str, Any]:
     }
     facts["not_told"] = [verdict.name for verdict in found.verdicts if not verdict.identifiable]
     return facts
+
+
+def _head(task: Task, cost: float, origin: ResultOrigin) -> dict[str, Any]:
+    return {
+        "date": origin.date,
+        "data": _files(origin.fitted),
+        "held_out": _files(origin.held_out),
+        "bench": task.bench.name,
+        "search": origin.search,
+        "seed": origin.seed,
+        "cost": cost,
+    }
 
 
 def _files(measurements: tuple[tuple[str, Measurement], ...]) -> list[dict[str, str]]:
@@ -93,7 +106,7 @@ def _screen(bench: Bench, name: str, row: Samples, facts: dict[str, Any]) -> dic
     return _document(f"{name} screen", facts, "Friction") | head | groups
 
 
-def _bench(bench: Bench, out: Path, parts: tuple[str, str], row: Samples) -> dict[str, Any]:
+def _bench(bench: Bench, out: Path, parts: list[str], row: Samples) -> dict[str, Any]:
     shipped = bench.path.resolve().parent == resources.shipped("config", "benches").resolve()
     base = bench.path.name if shipped else str(bench.path.resolve())
     load = unpack(Parameters, row).load
@@ -103,7 +116,9 @@ def _bench(bench: Bench, out: Path, parts: tuple[str, str], row: Samples) -> dic
     ):
         written = entry.model_dump(exclude_unset=True) | blade._asdict()
         sides[side] = written
-    plant: dict[str, Any] = {"motor": parts[0], "screen": parts[1]}
+    plant: dict[str, Any] = dict(zip(("motor", "screen"), parts, strict=False))
+    if not has_wiper(bench):
+        return {"name": out.stem, "extends": base, "plant": plant}
     return {"name": out.stem, "extends": base, "plant": plant | ({"blades": sides} if sides else {})}
 
 

@@ -19,9 +19,11 @@ from hilplant.identify.optimisers import budget, optimiser
 from hilplant.identify.parameters import Choice, search_space
 from hilplant.identify.profile import ConfidenceInterval, profile
 from hilplant.identify.residuals import LeastSquares, expected_noise
+from hilplant.identify.stages import ALL, GLOBAL_SEARCH, StagedValues, no_search
 from hilplant.identify.uncertainty import Identifiability, Spread, spread, verdicts
 from hilplant.identify.validation import EXPLAINED, Comparison, compare
 from hilplant.measurements.measurement import Samples
+from hilplant.models.load import REDUCED
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.progress import OnProgress, ProgressReport, unseen
 
@@ -48,6 +50,7 @@ class Task:
     executor: Executor = here
     journal: Callable[[Evaluate], Evaluate] = field(default=lambda evaluate: evaluate)
     on_progress: OnProgress = unseen
+    stages: tuple[int, ...] = ALL
 
 
 class Times(NamedTuple):
@@ -63,7 +66,7 @@ class Times(NamedTuple):
     @property
     def evaluations_per_s(self) -> float:
         """Simulations of all recordings that the search made in a second."""
-        return self.global_computed / self.global_s
+        return self.global_computed / max(self.global_s, 1e-9)
 
 
 class Identified(NamedTuple):
@@ -86,15 +89,38 @@ class Identified(NamedTuple):
     final_cost: float
 
 
-def identify(task: Task) -> Identified:
-    """Run stage 2 and stage 3, and tell how sure the result is."""
-    clock = [time.perf_counter()]
+def identify_partly(task: Task) -> StagedValues:
+    """Run stage 2 alone, or none: what stage 1 says is `task.about`. Nothing is said of how sure the values are."""
+    began_s = time.perf_counter()
+    cost, space, computed = _search_parts(task)
+    outcome = _searched(task, cost, space, computed)
+    row = task.choice.rows(outcome.values[np.newaxis])[0]
+    tables = task.bench.tables
+    return StagedValues(
+        outcome.values, outcome.cost, outcome if GLOBAL_SEARCH in task.stages else None, row,
+        compare(task.runs, row, tables), compare(task.held_out, row, tables), time.perf_counter() - began_s,
+    )  # fmt: skip
+
+
+def _search_parts(task: Task) -> tuple[Cost, Space, "_Computed"]:
     cost = cost_of(task.runs, task.choice, task.bench.tables)
     low, high = search_space(task.choice, task.about)
     space = Space(low, high, order_of(task.choice.names) if task.ordered else ())
-    computed = _Computed(evaluator(cost, task.executor))
-    evaluate = task.journal(computed)
-    outcome = optimiser(task.search)(evaluate, space, task.settings, task.seed, _search_progress(task))
+    return cost, space, _Computed(evaluator(cost, task.executor))
+
+
+def _searched(task: Task, cost: Cost, space: Space, computed: "_Computed") -> Outcome:
+    """Return what stage 2 finds; without it, the place where it would have begun."""
+    if GLOBAL_SEARCH not in task.stages:
+        return no_search(cost, task.about)
+    return optimiser(task.search)(task.journal(computed), space, task.settings, task.seed, _search_progress(task))
+
+
+def identify(task: Task) -> Identified:
+    """Run stage 2, unless it is left out, and stage 3, and tell how sure the result is."""
+    clock = [time.perf_counter()]
+    cost, space, computed = _search_parts(task)
+    outcome = _searched(task, cost, space, computed)
     clock.append(time.perf_counter())
     solution = refined(task, outcome)
     clock.append(time.perf_counter())
@@ -113,11 +139,17 @@ def identify(task: Task) -> Identified:
         float(spent[2]),
     )
     return Identified(
-        task, cost, space, outcome, solution, known, said, intervals, friction_forces(solution, known),
-        advice(task.bench, solution, said), row,
+        task, cost, space, outcome, solution, known, said, intervals,
+        friction_forces(solution, known) if has_wiper(task.bench) else [],
+        advice(task.bench, solution, said) if has_wiper(task.bench) else [], row,
         compare(task.runs, row, task.bench.tables), compare(task.held_out, row, task.bench.tables), times,
         float(cost(solution.values[np.newaxis])[0]),
     )  # fmt: skip
+
+
+def has_wiper(bench: Bench) -> bool:
+    """Say whether a bench has blades with friction to find; without them it is a motor alone (5.4.5)."""
+    return bench.parameters.load.model == REDUCED
 
 
 def _search_progress(task: Task) -> OnGeneration:

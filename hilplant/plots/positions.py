@@ -43,8 +43,8 @@ def plot_positions(
     for axes in panels.ravel()[len(crank_deg) :]:
         axes.set_visible(False)
     for index, axes in enumerate(panels.ravel()[: len(crank_deg)]):
-        _area(axes, wiper, turn)
-        _wiper(axes, wiper, moving.coordinates[index])
+        draw_area(axes, wiper, turn)
+        draw_wiper(axes, wiper, moving.coordinates[index])
         axes.set_title(f"crank {crank_deg[index]:g}°{_arm_angles(wiper, moving, index)}", fontsize=10)
     for axes in panels[-1]:
         axes.set_xlabel("x [cm]")
@@ -57,7 +57,8 @@ def plot_positions(
     save(figure, out_png, 110)
 
 
-def _wiper(axes: Any, wiper: Wiper, coordinates: Floats) -> None:
+def draw_wiper(axes: Any, wiper: Wiper, coordinates: Floats) -> None:
+    """Draw linkage, arms and blades at one position."""
     _linkage(axes, wiper, coordinates)
     for side, color in zip(wiper.sides, (_BLUE, _ORANGE), strict=True):
         _arm_and_blade(axes, wiper, side, (coordinates, color))
@@ -109,7 +110,7 @@ def _arm_and_blade(axes: Any, wiper: Wiper, side: WiperSide, look: tuple[Floats,
         axes.plot(*places.T, **look_of_blade, label=f"{side.name} blade")
 
 
-def _area(axes: Any, wiper: Wiper, turn: Motion) -> None:
+def draw_area(axes: Any, wiper: Wiper, turn: Motion) -> None:
     """Tint what each blade sweeps, from tip to tip, and dot the way of its joint."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path

@@ -1,8 +1,9 @@
 """Trains the motor network of a bench, and writes its file, its report and its plots (6.4.3)."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from hilplant.train.motor import MotorNetwork, train_motor, write_network
 from hilplant.train.motor_compare import Differences, Grid, over_grid, random_runs
 from hilplant.train.motor_figures import GOAL_MSE, GOAL_S, lines, path_figures, table
 from hilplant.train.motor_search import OneTickErrors, search
+from hilplant.train.own_data import own_sequences
 
 Figures = dict[str, Any]
 _RUNS = 100
@@ -22,13 +24,22 @@ _RUNS = 100
 _OTHER_SEED = 1_000_000
 
 
-def report_motor(
-    bench_name: str, seed: int, scenarios: int, out: Path, on_progress: OnProgress = unseen
-) -> TrainingReport:
+class MotorOptions(NamedTuple):
+    """What is asked of the motor network's training; `data` are own tables, FILE@slow or FILE@fast."""
+
+    seed: int
+    scenarios: int
+    out: Path
+    data: Sequence[str] = ()
+
+
+def report_motor(bench_name: str, options: MotorOptions, on_progress: OnProgress = unseen) -> TrainingReport:
     """Train a motor network, write `motor.yaml`, `report.md` and plots; it kept its bounds or not."""
+    seed, scenarios, out, data = options
     bench, folder = load_bench(bench_name), make_folder(out)
     command = f"hilplant train motor {Path(bench_name).stem} --seed {seed}"
-    network = train_motor(bench, seed, command, on_progress)
+    command += "".join(f" --data {Path(name).name}" for name in data)
+    network = train_motor(bench, seed, command, on_progress, own_sequences(bench, data))
     write_network(network, folder / "motor.yaml")
     others = search(bench, network.networks, scenarios, seed + _OTHER_SEED)
     differences = random_runs(bench, network.networks, _RUNS, seed)

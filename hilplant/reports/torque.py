@@ -18,7 +18,8 @@ from hilplant.plots.training import plot_errors
 from hilplant.plots.training_data import plot_torque_fit
 from hilplant.progress import OnProgress, unseen
 from hilplant.reports.page import TrainingReport, markdown_table, write_page
-from hilplant.train.torque import TrainedTorque, TrainingPlan, data_of, train
+from hilplant.train.own_data import own_torque
+from hilplant.train.torque import Data, TrainedTorque, TrainingPlan, data_of, train
 from hilplant.train.torque_data import Speeds
 from hilplant.train.torque_file import Dense, content_of
 from hilplant.train.torque_search import Range, TorqueDifferences, search
@@ -32,7 +33,11 @@ _SCENARIO_S = 6.0
 
 @dataclass(frozen=True, slots=True)
 class TorqueOptions:
-    """What is asked of the torque network's training: `speeds_rad_s` of the wipes, and `out`, the folder."""
+    """What is asked of the torque network's training: `speeds_rad_s` of the wipes, and `out`, the folder.
+
+    `data` is a table of the user's own, `validation` another one to judge by; the bench then only says what the network
+    stands in for.
+    """
 
     neurons: int
     harmonics: int
@@ -41,16 +46,15 @@ class TorqueOptions:
     seed: int
     scenarios: int
     out: Path
+    data: Path | None = None
+    validation: Path | None = None
 
 
 def train_torque(bench_name: str, options: TorqueOptions, on_progress: OnProgress = unseen) -> TrainingReport:
     """Train a torque network and write `torque.yaml`, `report.md` and plots; it kept its bounds or not."""
     bench, folder = load_bench(bench_name), make_folder(options.out)
-    plan = TrainingPlan(
-        neurons=options.neurons, harmonics=options.harmonics, starts=options.starts, seed=options.seed,
-        speeds=Speeds(options.speeds_rad_s),
-    )  # fmt: skip
-    data, begin, worked = data_of(bench, plan), time.perf_counter(), time.process_time()
+    plan, data = plan_and_data(bench, options)
+    begin, worked = time.perf_counter(), time.process_time()
     trained = train(data, plan, on_progress)
     seconds = time.perf_counter() - begin, time.process_time() - worked
     content, dense = content_of(bench, data, trained, _command(bench_name, options))
@@ -68,10 +72,23 @@ def train_torque(bench_name: str, options: TorqueOptions, on_progress: OnProgres
     return TrainingReport([*_torque_lines(figures), written], figures, found.beyond_bound == 0)
 
 
+def plan_and_data(bench: Bench, options: TorqueOptions) -> tuple[TrainingPlan, Data]:
+    """Return what to train and from what: the bench's own plant, or the user's table."""
+    plan = TrainingPlan(
+        neurons=options.neurons, harmonics=options.harmonics, starts=options.starts, seed=options.seed,
+        speeds=Speeds(options.speeds_rad_s),
+    )  # fmt: skip
+    if options.data is None:
+        return plan, data_of(bench, plan)
+    own = own_torque(options.data, options.validation, options.seed)
+    return replace(plan, speeds=Speeds(own.speeds_rad_s), points=len(own.data.training.states)), own.data
+
+
 def _command(bench_name: str, options: TorqueOptions) -> str:
     speeds = ",".join(f"{speed:g}" for speed in options.speeds_rad_s)
     words = f"--neurons {options.neurons} --harmonics {options.harmonics} --starts {options.starts} --speeds {speeds}"
-    return f"hilplant train torque {Path(bench_name).stem} {words} --seed {options.seed}"
+    own = f" --data {options.data.name}" if options.data is not None else ""
+    return f"hilplant train torque {Path(bench_name).stem} {words} --seed {options.seed}{own}"
 
 
 def _with_network(bench: Bench, content: Figures) -> Bench:

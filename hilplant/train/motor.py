@@ -1,5 +1,6 @@
 """`hilplant train motor`: data from the physical plant, training, errors, the bound of the guard, and one file."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from hilplant.bench import Bench
 from hilplant.bench.motor_network_file import FORMAT, QUANTITIES, PathSection
 from hilplant.bench.parameter_hash import motor_hash
 from hilplant.progress import OnProgress
-from hilplant.train.motor_data import LENGTH_S, Floats, recorded
+from hilplant.train.motor_data import LENGTH_S, DrivenSequence, Floats, recorded
 from hilplant.train.motor_figures import path_figures
 from hilplant.train.motor_fit import TrainedPath, train_path
 from hilplant.train.motor_search import OneTickErrors, search
@@ -37,14 +38,19 @@ class MotorNetwork:
         return any(path.interrupted for path in self.paths)
 
 
-def train_motor(bench: Bench, seed: int, command: str, on_progress: OnProgress) -> MotorNetwork:
+def train_motor(
+    bench: Bench, seed: int, command: str, on_progress: OnProgress, own: Mapping[str, DrivenSequence] | None = None
+) -> MotorNetwork:
     """Train both paths for the motor of a bench; the same seed gives the same numbers.
 
+    A brush of which there are `own` data learns from them, the other from what the bench's plant does.
     Ctrl-C ends the stage of training that runs, and each that follows, with the best weights so far.
     """
     paths = []
     for index, brush in enumerate(("slow", "fast")):
-        sequence = recorded(bench, brush, LENGTH_S, np.random.default_rng([seed, index, 0]))
+        sequence = (own or {}).get(brush)
+        if sequence is None:
+            sequence = recorded(bench, brush, LENGTH_S, np.random.default_rng([seed, index, 0]))
         with one_thread():
             paths.append(train_path(brush, sequence, np.random.default_rng([seed, index, 1]), on_progress))
     sections = {path.brush: _section(path) for path in paths}

@@ -6,7 +6,8 @@ from typing import Any
 import typer
 
 from hilplant.cli.progress import progress_shown
-from hilplant.identify.from_files import Request, figures, identify_files
+from hilplant.identify.from_files import IdentifiedFiles, Request, figures, identify_files, partial_figures
+from hilplant.identify.stages import StagedValues
 from hilplant.identify.starting_point import StartingPoint
 from hilplant.identify.three_stages import Identified
 from hilplant.identify.validation import unexplained
@@ -17,6 +18,10 @@ def run_identification(request: Request, report: Path | None) -> dict[str, Any]:
     with progress_shown() as on_progress:
         done = identify_files(request, on_progress)
     written = done.written
+    if isinstance(done.found, StagedValues):
+        done.journal.remove()
+        _print_partly(done, done.found)
+        return partial_figures(done.task, done.found)
     if report is not None:
         from hilplant.reports.identification import write_report
 
@@ -25,6 +30,20 @@ def run_identification(request: Request, report: Path | None) -> dict[str, Any]:
     done.journal.remove()
     _print(done.found, done.known, written)
     return figures(done.found)
+
+
+def _print_partly(done: IdentifiedFiles, found: StagedValues) -> None:
+    for note in done.known.notes:
+        typer.echo(note)
+    typer.echo(f"{'parameter':24}{'before':>12}{'found':>12}   stages {', '.join(map(str, done.task.stages))}")
+    choice = done.task.choice
+    for name, before, value in zip(choice.names, choice.values, found.values, strict=True):
+        typer.echo(f"{name:24}{before:12.5g}{value:12.5g}")
+    for role, compared in (("fitted", found.fitted), ("held out", found.held_out)):
+        for each in (comparison.error for comparison in compared):
+            typer.echo(f"{each.name} ({role}): current {each.rms_current_a:.4g} A rms, noise {each.noise_a:.4g} A")
+    typer.echo(f"cost {found.cost:.4g} in {found.seconds:.1f} s; intervals come with stage 3")
+    typer.echo(f"written: {', '.join(map(str, done.written))}")
 
 
 def _print(found: Identified, known: StartingPoint, written: list[Path]) -> None:

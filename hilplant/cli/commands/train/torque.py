@@ -30,12 +30,17 @@ def torque(  # noqa: PLR0913, PLR0917
     scenarios: Annotated[int, typer.Option(min=1, help="random runs against the physical plant, for the report")] = 200,
     seed: Seed = 1,
     study: Annotated[bool, typer.Option("--study", help="Table 6-1 instead: 1 to 20 neurons, thrice each")] = False,
+    data: Annotated[
+        Path | None, typer.Option(help="own data: crank_angle_rad, crank_speed_rad_s, dry_torque_n_m, wet_torque_n_m")
+    ] = None,
+    validation: Annotated[Path | None, typer.Option(help="own data to judge by; else a tenth of --data")] = None,
     out: Out = Path("trained-torque"),
     json_file: JsonFile = None,
 ) -> None:
     """Train the torque network of the whole wiper, section 6.4.2.
 
-    Ctrl-C keeps the best so far. Exit code 1 when a random run finds it beyond the bound that its file states.
+    From the bench's plant, or with --data from a table of your own. Ctrl-C keeps the best so far. Exit code 1 when a
+    random run finds it beyond the bound that its file states.
     """
     need("train")
     from hilplant.cli.actions.train import run_training
@@ -43,7 +48,9 @@ def torque(  # noqa: PLR0913, PLR0917
     from hilplant.reports.torque_sizes import study_torque
 
     claim(json_file)
-    options = TorqueOptions(neurons, harmonics, starts, _speeds(speeds), seed, scenarios, out)
+    if validation is not None and data is None:
+        raise Failure("--validation: goes with --data")
+    options = TorqueOptions(neurons, harmonics, starts, _speeds(speeds), seed, scenarios, out, data, validation)
     if study:
         run_training(lambda on_progress: study_torque(bench, options, 20, on_progress), json_file)
     else:
