@@ -17,6 +17,7 @@ EXTRAS = {
     "dask": Extra("Dask clusters", ("distributed",)),
     "demo": Extra("recording and plot of the demo", ("matplotlib", "pyarrow")),
     "identify": Extra("measurements", ("cma", "jinja2", "matplotlib", "pyarrow", "uncertainties")),
+    "mcap": Extra("MCAP files", ("mcap",)),
     "mdf": Extra("MF4 files", ("asammdf",)),
     "plot": Extra("pictures", ("matplotlib",)),
     "recording": Extra("recordings and Parquet files", ("pyarrow",)),

@@ -17,7 +17,7 @@ _FLICK_S, _PARKING_S = 2.0, 1.8
 class DemoSequence(NamedTuple):
     """A demonstration: its length, the stalk over time, and the ECU's pause between intermittent wipes."""
 
-    seconds: float
+    seconds: float | None
     turns: tuple[StalkTurn, ...]
     pause_s: float
 
@@ -44,6 +44,11 @@ def sequence(seconds: float | None) -> DemoSequence:
         _turn(length_s - _FLICK_S, "flick"),
     )
     return DemoSequence(asked_s, turns, pause_s=min(2.0, 0.08 * active_s))
+
+
+def by_hand(seconds: float | None) -> DemoSequence:
+    """Return a demonstration that is driven by hand, without end unless `seconds` are given."""
+    return DemoSequence(seconds, (), pause_s=2.0)
 
 
 def _turn(time_s: float, word: str) -> StalkTurn:

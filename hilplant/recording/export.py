@@ -20,7 +20,7 @@ from hilplant.recording.tables import TableError, check_ending, mf4_group, open_
 from hilplant.signals import INPUTS, OUTPUTS, STATUS
 from hilplant.units import SECOND_NS
 
-TABLE_ENDINGS = (".mf4", ".csv", ".parquet")
+TABLE_ENDINGS = (".mf4", ".csv", ".parquet", ".mcap")
 _SIGNALS: tuple[tuple[str, tuple[Signal, ...], tuple[str, ...]], ...] = (
     ("", OUTPUTS, OUTPUT_COLUMNS),
     ("in_", INPUTS, INPUT_COLUMNS),

@@ -22,7 +22,7 @@ from hilplant.runtime.ring import Ring
 _LOG = logging.getLogger(__name__)
 _START_TIMEOUT_S = 30.0
 #: Files that `export` makes of a recording; a recording under such a name would pass for one.
-_EXPORTED = (".mf4", ".blf", ".asc", ".csv", ".parquet")
+_EXPORTED = (".mf4", ".blf", ".asc", ".csv", ".parquet", ".mcap")
 
 
 class Recorder:

@@ -1,4 +1,4 @@
-"""Columns of numbers over time -> a file, in the format that its ending names: .csv, .parquet or .mf4."""
+"""Columns of numbers over time -> a file, in the format that its ending names: .csv, .parquet, .mf4 or .mcap."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
@@ -12,6 +12,7 @@ from pydantic_core import to_json
 from hilplant.atomic_write import whole_file
 from hilplant.extras import need
 from hilplant.failure import Failure
+from hilplant.recording.mcap_table import mcap_table
 
 #: Rows that are turned into text at once.
 _CHUNK = 4096
@@ -59,6 +60,8 @@ def check_ending(path: str | Path) -> None:
         need("mdf")
     if ending == ".parquet":
         need("recording")
+    if ending == ".mcap":
+        need("mcap")
 
 
 @contextmanager
@@ -134,4 +137,5 @@ _WRITERS: dict[str, Callable[[Path, Mapping[str, str]], AbstractContextManager[A
     ".csv": _csv_table,
     ".parquet": _parquet_table,
     ".mf4": _mf4_table,
+    ".mcap": mcap_table,
 }

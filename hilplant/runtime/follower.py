@@ -8,7 +8,7 @@ from hilplant.runtime.ring import Ring
 
 
 class Follower:
-    """One reader of the ring `name`, with places of its own: in the rows and in the events.
+    """One reader of the ring `name`, with places of its own: in rows, events and frames.
 
     It begins with what is written from now on; with `history` with what the ring still holds, up to a minute.
     """
@@ -24,8 +24,8 @@ class Follower:
             When it is of another version of hilplant.
         """
         self._ring = Ring.attach(name)
-        lanes = self._ring.row_lane, self._ring.events
-        self._row_place, self._event_place = (
+        lanes = self._ring.row_lane, self._ring.events, self._ring.frame_lane
+        self._row_place, self._event_place, self._frame_place = (
             max(0, lane.head - lane.capacity + lane.capacity // 8) if history else lane.head for lane in lanes
         )
 
@@ -33,6 +33,12 @@ class Follower:
         """Take what is new: float64 [n, columns] in the order of the loop's row, and how many rows were lost."""
         taken = self._ring.row_lane.since(self._row_place)
         self._row_place = taken.place
+        return taken
+
+    def frames(self) -> Taken:
+        """Take the frames that are new, received and sent, as an array of ``FRAME_DTYPE``."""
+        taken = self._ring.frame_lane.since(self._frame_place)
+        self._frame_place = taken.place
         return taken
 
     def events(self) -> Taken:

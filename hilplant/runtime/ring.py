@@ -72,8 +72,9 @@ class Ring:
         events_at = self._frames_at + self._frames.nbytes
         events = np.ndarray((_EVENTS,), COMMAND_DTYPE, shared.bytes, events_at)
         commands = np.ndarray((_COMMANDS,), COMMAND_DTYPE, shared.bytes, events_at + events.nbytes)
-        #: What became of commands; and all rows, for followers.
+        #: What became of commands; and all rows and frames, for followers.
         self.events, self.row_lane = Lane(words, _EVENT_HEAD, events), Lane(words, _ROW_HEAD, self._rows)
+        self.frame_lane = Lane(words, _FRAME_HEAD, self._frames)
         #: Commands into the loop.
         self.mailbox = Mailbox(words, _COMMAND_TAIL, Lane(words, _COMMAND_HEAD, commands))
         self._scratch: NDArray[np.float64] = np.zeros(words[_WIDTH])

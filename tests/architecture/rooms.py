@@ -27,7 +27,7 @@ LAYERS: dict[str, str] = {
     "bench": "bench",
     "server": "runtime ecu recording channel",
     "offline": "library c_source simulation measurements motor_bench identify train",
-    "results": "plots reports testing perf doctor demo modelling",
+    "results": "plots reports testing perf doctor operator_page demo modelling",
     "thesis": "thesis",
     "top": "cli __init__ __main__",
 }
@@ -76,7 +76,8 @@ ARROWS: dict[str, str] = {
     "testing": f"{_OFFLINE} simulation plots",
     "doctor": "extras jit",
     "modelling": (f"{_OFFLINE} simulation measurements identify train plots reports library web channel"),
-    "demo": f"{_OFFLINE} plots",
+    "operator_page": f"{_OFFLINE} simulation channel companion web testing",
+    "demo": f"{_OFFLINE} plots channel companion operator_page",
     "thesis": f"{_OFFLINE} simulation measurements motor_bench identify train plots reports perf c_source",
     "__init__": "bench channel checked_yaml simulation",
     "__main__": "cli",

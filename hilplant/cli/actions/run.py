@@ -10,6 +10,7 @@ from hilplant.channel.beside_loop import announced
 from hilplant.cli.voice import Voice
 from hilplant.ecu.loop_controller import Inside, seated
 from hilplant.failure import Failure
+from hilplant.operator_page.beside_run import PageOptions, page_beside
 from hilplant.recording.beside_loop import RecordTo, recording
 from hilplant.runtime.loop import Loop
 from hilplant.runtime.scheduling import Privilege
@@ -31,6 +32,7 @@ def run_daemon(  # noqa: PLR0913, PLR0917
     channel: str | None,
     inside: Inside | None = None,
     door: bool = True,
+    page: PageOptions | None = None,
 ) -> Summary:
     """Serve a bench and say on the terminal how it started and how it ended."""
     bench = load_bench(name)
@@ -43,7 +45,14 @@ def run_daemon(  # noqa: PLR0913, PLR0917
     stop, voice = StopRequest(), Voice()
     try:
         # signals end the run, not the recorder's work
-        with ended_by_signals(stop), recording(bench, record) as ring, announced(bench, ring, door):
+        with (
+            ended_by_signals(stop),
+            recording(bench, record) as ring,
+            announced(bench, ring, door) as run,
+            page_beside(bench, run, page) as served,
+        ):
+            if served is not None:
+                voice.say(f"page: {served.said}")
             on_start = partial(_say_start, bench, voice)
             summary = serve(bench, seconds, ring, stop, on_start, partial(_prepare, seat))
     except Failure as failure:

@@ -18,12 +18,13 @@ from hilplant.cli.options import (
     flat,
     write_json,
 )
+from hilplant.cli.page_option import LOGS, Browser, PageAddress, PageLogs, Stream, WithPage, page_options
 from hilplant.failure import Failure
 
 app = command_app()
 
 
-@app.command(epilog="Example: hilplant run default --channel can0 --record run.hilrec")
+@app.command(cls=WithPage, epilog="Example: hilplant run default --channel can0 --record run.hilrec")
 def run(  # noqa: PLR0913, PLR0917
     bench: BenchName = DEFAULT,
     seconds: Seconds = None,
@@ -41,6 +42,10 @@ def run(  # noqa: PLR0913, PLR0917
     no_channel: Annotated[
         bool, typer.Option("--no-channel", help="open no local socket through which other programs take part")
     ] = False,
+    page: PageAddress = None,
+    logs: PageLogs = LOGS,
+    browser: Browser = False,
+    stream: Stream = "",
     json_file: JsonFile = None,
 ) -> None:
     """Serve a bench on its CAN interface.
@@ -61,7 +66,7 @@ def run(  # noqa: PLR0913, PLR0917
     to = None if record is None else RecordTo(record, rotation)
     claim(json_file)
     inside = None if controller is None else Inside(controller, reference or "3.14", budget_us)
-    summary = run_daemon(bench, seconds, to, channel, inside, not no_channel)
+    summary = run_daemon(bench, seconds, to, channel, inside, not no_channel, page_options(page, logs, browser, stream))
     missing = " | ".join(f"{given.name}: {given.fix}" for given in summary.privileges if not given.granted)
     write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))
     raise typer.Exit(0 if summary.is_sound else 1)
