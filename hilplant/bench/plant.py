@@ -27,6 +27,7 @@ from hilplant.failure import Failure
 from hilplant.mechanics.coefficients import Aerodynamics, check_aerodynamics
 from hilplant.models.circuit import CIRCUITS
 from hilplant.models.load import LOADS
+from hilplant.models.mechanical_records import Obstacles
 from hilplant.models.records import Blade, Friction, Load, Parameters, ParkSwitch, Relays
 from hilplant.models.slow_records import Heat
 from hilplant.units import MILLISECOND_NS, RAD_PER_DEG, SECOND_NS
@@ -74,6 +75,7 @@ def build_plant(spot: Spot, plant: PlantSection, step_ns: int) -> Plant | None:
         wiring=wiring(plant.supply, plant.wires),
         relays=plant.relays.record(step_ns) if plant.relays is not None else Relays(),
         heat=plant.heat.record() if plant.heat is not None else Heat(),
+        obstacles=plant.obstacles.record() if plant.obstacles is not None else Obstacles(),
         networks=row_of_networks(trained.numbers, mover.numbers),
     )
     check_bounds(spot.inner("load"), trained, parameters, mechanics.table)

@@ -9,6 +9,7 @@ from hilplant.bench.electrical_sections import RelaysSection, SupplySection, Wir
 from hilplant.bench.heat_section import HeatSection
 from hilplant.bench.load_files import PolynomialFile, TorqueFile
 from hilplant.bench.motor_network_file import MotorNetworkFile
+from hilplant.bench.obstacle_section import ObstaclesSection
 from hilplant.bench.parts import LinkageFile, MotorFile, Referred, WithAssumptions
 from hilplant.bench.screen_parts import ScreenFile
 from hilplant.checked_yaml.checked import Checked, Container, MayBeHole, NotNegative, Real, wrong
@@ -199,3 +200,6 @@ class PlantSection(Container):
     wires: WiresSection | None = Field(default=None, description="wires to the motor; ideal when left out")
     relays: RelaysSection | None = Field(default=None, description="times of the relays; ideal when left out")
     heat: HeatSection | None = Field(default=None, description="how the motor gets warm; it stays cold when left out")
+    obstacles: ObstaclesSection | None = Field(
+        default=None, description="what stands in the arms' way; nothing when left out"
+    )

@@ -6,6 +6,7 @@ from hilplant.checked_yaml.problems import suggestion
 from hilplant.failure import Failure
 from hilplant.faults.bus_catalogue import BUS_FAULTS
 from hilplant.faults.fault import Change, FaultDefinition, Quantity, Way
+from hilplant.faults.mechanical_catalogue import MECHANICAL_FAULTS
 
 #: The motor's terminals by DIN 72552, and what hangs on each.
 TERMINALS = {"53": "slow brush", "53b": "fast brush", "53e": "park contact", "31": "common brush"}
@@ -136,18 +137,7 @@ FAULTS: tuple[FaultDefinition, ...] = (
     FaultDefinition("stiff_bearing", "motor", "dry or seized bearing of the motor",
           "Coulomb torque plus the torque", (_plain("motor.coulomb_torque_n_m", "torque_n_m"),),
           (Quantity("torque_n_m", 0.0, 10.0, "dry friction added at the motor shaft [N m]"),)),
-    *(
-        FaultDefinition(f"{side}_blade_worn", "mechanical", f"{side} blade hardened or worn",
-              "friction coefficient times the factor", (_scaled(f"load.{side}_blade.wear", None),),
-              (Quantity("factor", 0.0, 10.0, "on the coefficient of friction"),))
-        for side in ("left", "right")
-    ),
-    *(
-        FaultDefinition(f"{side}_blade_off", "mechanical", f"{side} blade lifted off the screen, or its rubber lost",
-              "no force on the screen; the masses stay",
-              (Change(f"load.{side}_blade.force_n", "scale", lambda values, step_s: 0.0),))
-        for side in ("left", "right")
-    ),
+    *MECHANICAL_FAULTS,
 )  # fmt: skip
 
 #: All faults: those of the plant, and those of the bus.

@@ -5,6 +5,7 @@ from typing import Any
 from hilplant.jit import compiled
 from hilplant.models import tables as channel
 from hilplant.models.lookup import value
+from hilplant.models.obstacles import obstructed
 from hilplant.models.polynomial import torque_over_speed
 from hilplant.models.records import Load, Parameters
 from hilplant.models.reduced import reduced
@@ -27,9 +28,11 @@ WHOLE_WIPER = (REDUCED, NETWORK)
 
 
 @compiled
-def without_inertia(load: Load) -> bool:
+def without_inertia(parameters: Parameters) -> bool:
     """Return whether the load is a torque by the speed alone: then one evaluation, half-way, serves a whole step."""
-    return bool(load.model == NONE or load.model == POLYNOMIAL)  # noqa: PLR1714
+    load = parameters.load
+    smooth = load.model == NONE or load.model == POLYNOMIAL  # noqa: PLR1714
+    return bool(smooth and parameters.obstacles.altered < 0.5)
 
 
 @compiled
@@ -59,7 +62,8 @@ def resist_as(mode: float, tangent: Tangent, crank: Crank, parameters: Parameter
         faster = crank.speed_rad_s - tangent.speed_rad_s
         torque = tangent.torque_n_m + tangent.by_angle * on + tangent.by_speed * faster
         return Resistance(value(crank.tables, crank.place, channel.INERTIA), torque, 0.0, 0.0)
-    return resist(crank, parameters, inputs)
+    load = resist(crank, parameters, inputs)
+    return obstructed(load, crank, parameters) if parameters.obstacles.altered > 0.5 else load
 
 
 @compiled

@@ -76,8 +76,9 @@ def by_network(
 
 @compiled
 def beyond_training(parameters: Parameters) -> bool:
-    """Return whether the plant has what no network knows: they are trained with ideal wires and a cold motor."""
-    return bool(parameters.wiring.altered > 0.5 or parameters.heat.altered > 0.5)
+    """Return whether the plant has what no network knows: ideal wires, a cold motor, a free way."""
+    altered = parameters.wiring.altered > 0.5 or parameters.heat.altered > 0.5 or parameters.obstacles.altered > 0.5
+    return bool(altered)
 
 
 @compiled

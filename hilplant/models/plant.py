@@ -9,7 +9,9 @@ from hilplant.models.guard import admit, hold_if_wrong
 from hilplant.models.heat import heated, losses, warmed
 from hilplant.models.load import NETWORK, resist_as
 from hilplant.models.lookup import derivative, find, value, within_turn
+from hilplant.models.mechanical_records import IceState, Obstacles
 from hilplant.models.motor_choice import move
+from hilplant.models.obstacles import ice_after, with_ice_left
 from hilplant.models.park_switch import contact_now
 from hilplant.models.records import Motor, Parameters, State
 from hilplant.models.reduced import left_pressing, right_pressing
@@ -42,7 +44,7 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     """
     # 1 what is not finite stays outside; the motor is as warm as it is
     state, inputs = admit(state, inputs)
-    parameters = as_it_is(parameters, state)
+    told, parameters = parameters, as_it_is(parameters, state)
     angle, speed = state.crank_angle_rad, state.motor_speed_rad_s / parameters.motor.gear_ratio
     # 2 park switch and relays
     contact = contact_now(angle, state.park_contact, state.bounce_left, parameters.park_switch)
@@ -54,7 +56,7 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     motion = ArmatureMotion(state.current_a if connection.closed > 0.5 else 0.0, state.motor_speed_rad_s, 0.0)
     load_mode, tangent = PHYSICAL, NO_TANGENT
     if parameters.load.model == NETWORK:
-        load_mode = active_load_model(parameters.networks, speed, inputs, state.load_mode)
+        load_mode = active_load_model(parameters, speed, inputs, state.load_mode)
     if load_mode == BY_NETWORK:
         tangent = network_tangent(parameters.networks, angle, speed, inputs.screen == 1.0)
     train = Train(connection, tables, inputs, parameters, load_mode, tangent)
@@ -66,12 +68,13 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     shown = Seen(seen.current_a, contact.shown, state.guard, memory.mode, state.heat)
     outputs = measured(motion, crank, load, shown, train)
     # 6 slow states
-    heat = heat_after(motion, after, state.heat, train)
+    reached = within_turn(angle + after.turned / parameters.motor.gear_ratio)
+    heat, ice = heat_after(motion, after, state.heat, train), ice_at(reached, state.ice, crank, told)
     # 7 guard
     following = State(
         current_a=without_denormals(after.current),
         motor_speed_rad_s=without_denormals(after.speed),
-        crank_angle_rad=within_turn(angle + after.turned / parameters.motor.gear_ratio),
+        crank_angle_rad=reached,
         park_contact=contact.closed,
         bounce_left=contact.bounce_left,
         guard=state.guard,
@@ -82,6 +85,7 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
         relay_fast=moved.fast,
         noise=seen.noise,
         heat=heat,
+        ice=ice,
     )
     return hold_if_wrong(following, angle), outputs
 
@@ -96,6 +100,12 @@ class Seen(NamedTuple):
     heat: HeatState
 
 
+class NewObstacles(NamedTuple):
+    """The obstacles among the parameters."""
+
+    obstacles: Obstacles
+
+
 class NewMotor(NamedTuple):
     """The motor among the parameters."""
 
@@ -105,9 +115,21 @@ class NewMotor(NamedTuple):
 @compiled
 def as_it_is(parameters: Parameters, state: State) -> Parameters:
     """Return the parameters as the slow states have made them."""
+    if parameters.obstacles.altered > 0.5:
+        parameters = changed(parameters, NewObstacles(with_ice_left(parameters.obstacles, state.ice)))
     if parameters.heat.altered < 0.5:
         return parameters
     return changed(parameters, NewMotor(heated(parameters.motor, parameters.heat, state.heat)))
+
+
+@compiled
+def ice_at(reached_rad: float, now: IceState, before: Crank, parameters: Parameters) -> IceState:
+    """Return how far the ice has been left once the crank has reached an angle; as it is where there is no obstacle."""
+    if parameters.obstacles.altered < 0.5:
+        return IceState(0.0, 0.0)
+    tables = before.tables
+    after = Crank(tables, find(tables, reached_rad), reached_rad, before.speed_rad_s)
+    return ice_after(now, parameters.obstacles, before, after)
 
 
 @compiled

@@ -5,6 +5,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from hilplant.declaration import choice, declared, flag, index_of, quantity
+from hilplant.models.mechanical_records import IceState, Obstacles
 from hilplant.models.slow_records import Heat, HeatState
 from hilplant.signals import ACTIVE_MODELS
 
@@ -174,6 +175,7 @@ class Parameters(NamedTuple):
     relays: Relays = Relays()
     sensors: Sensors = Sensors()
     heat: Heat = Heat()
+    obstacles: Obstacles = Obstacles()
     networks: Any = NO_NETWORKS
 
 
@@ -228,6 +230,7 @@ class State(NamedTuple):
     relay_fast: RelayState = RelayState()
     noise: Annotated[float, quantity("", "where the noise of the sensors has come to", watched=False)] = 1.0
     heat: HeatState = HeatState()
+    ice: IceState = IceState()
 
 
 #: Where in its packed row each element is, by its name: `load.left_blade.wear` of the parameters, `memory.brush` of

@@ -94,7 +94,7 @@ def hold_of(load: Resistance, motor: Motor) -> Hold:
 @compiled
 def turn(motion: ArmatureMotion, crank_angle_rad: float, load: Resistance, train: Train) -> ArmatureMotion:
     """Return the motion one step later; `load` is that at the start."""
-    if not without_inertia(train.parameters.load):
+    if not without_inertia(train.parameters):
         return turn_in_stretches(motion, crank_angle_rad, load, train)
     duration, crank_speed = train.parameters.step_s, motion.speed / train.parameters.motor.gear_ratio
     half_way = crank_angle_rad + 0.5 * duration * crank_speed

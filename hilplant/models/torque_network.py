@@ -13,6 +13,7 @@ import math
 from typing import Any, NamedTuple
 
 from hilplant.jit import compiled
+from hilplant.models.records import Parameters
 from hilplant.signals import Inputs
 
 #: Places of the head: neurons, lowest and highest speed of the crank in the training [rad/s], what must be left of
@@ -69,17 +70,18 @@ def network_tangent(networks: Any, crank_angle_rad: float, crank_speed_rad_s: fl
 
 
 @compiled
-def active_load_model(networks: Any, crank_speed_rad_s: float, inputs: Inputs, before: float) -> float:
+def active_load_model(parameters: Parameters, crank_speed_rad_s: float, inputs: Inputs, before: float) -> float:
     """Return who gives the torque in this tick; `before` is who did in the last one.
 
     The training knows forward speeds within its range, a dry or a wet screen under both blades, and no brake, wind,
-    wear or change of the arms' forces. Between dry and wet the physical load passes through the tacky screen, which the
-    network does not know.
+    wear or change of the arms' forces, and nothing in the way of the arms. Between dry and wet the physical load passes
+    through the tacky screen, which the network does not know.
     """
+    networks = parameters.networks
     if networks.shape[0] == 0 or networks[0] == 0.0:
         return PHYSICAL
     margin = 0.0 if before == NETWORK else networks[MARGIN]
-    if not trained(inputs):
+    if parameters.obstacles.altered > 0.5 or not trained(inputs):
         return OUTSIDE
     if not crank_speed_rad_s >= networks[LOWEST] + margin:
         return STANDSTILL

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hilplant.bench import check_bench, load_bench
+from hilplant.models.mechanical_records import Obstacles, SideObstacles
 from hilplant.models.plant import simulate_rows
 from hilplant.models.records import STATE_INDEX, Parameters, Relays, RelayTiming, Wiring
 from hilplant.models.slow_records import Heat
@@ -18,9 +19,21 @@ def built(plant: str) -> Parameters:
 
 
 def test_an_ideal_plant_is_not_altered() -> None:
-    for plant in ("{}", "{supply: {resistance_ohm: 0}, wires: {}, relays: {relay_on: {bounce_ms: 0}}}"):
+    ideal = "supply: {resistance_ohm: 0}, wires: {}, relays: {relay_on: {bounce_ms: 0}}, obstacles: {slip_deg: 3}"
+    for plant in ("{}", f"{{{ideal}}}"):
         parameters = built(plant)
         assert (parameters.wiring, parameters.relays, parameters.heat) == (Wiring(), Relays(), Heat())
+        assert parameters.obstacles == Obstacles()
+
+
+def test_obstacles_stand_at_their_side_and_end_in_radians() -> None:
+    end = "{angle_deg: 90, stiffness_n_m_rad: 40}"
+    made = built(f"{{obstacles: {{left: {{above: {end}}}, right: {{below: {end}, rebound: 1, frozen_n_m: 12}}, "
+                 "slip_deg: 3, jam: {angle_deg: 180, width_deg: 20, torque_n_m: 50}}}").obstacles  # fmt: skip
+    assert made.left == pytest.approx(SideObstacles(0.0, 0.0, np.pi / 2.0, 40.0, 0.0, 0.0))
+    assert made.right == pytest.approx(SideObstacles(np.pi / 2.0, 40.0, 0.0, 0.0, 1.0, 12.0))
+    jammed = (made.altered, made.slip_rad, made.jam_rad, made.jam_half_rad, made.jam_n_m)
+    assert jammed == pytest.approx((1.0, np.radians(3.0), np.pi, np.radians(10.0), 50.0))
 
 
 @pytest.mark.parametrize("terminal", ["53", "53b", "53e", "31"])
@@ -67,6 +80,9 @@ def test_a_motor_network_that_was_trained_cold_does_not_move_a_motor_with_heat()
         (f"heat: {{{HEAT}, trip_c: 150}}", "trip_c and reset_c are given together"),
         (f"heat: {{{HEAT}, trip_c: 110, reset_c: 150}}", "reset_c must be below trip_c, 110"),
         ("heat: {winding_j_k: 150}", "case_j_k"),
+        ("obstacles: {left: {above: {angle_deg: 90}}}", "stiffness_n_m_rad"),
+        ("obstacles: {right: {rebound: 2}}", "rebound"),
+        ("obstacles: {jam: {angle_deg: 400}}", "angle_deg"),
     ],
 )
 def test_what_cannot_be_is_refused_at_its_line(plant: str, said: str) -> None:
