@@ -1,5 +1,6 @@
 """What can be built and is yet doubtful: numbers that no wiper has, and settings that take a protection away."""
 
+import math
 import re
 from collections.abc import Iterable
 
@@ -7,8 +8,10 @@ from hilplant.bench.description import BenchDescription
 from hilplant.bench.mapping import MappedMessage
 from hilplant.bench.parts import MotorFile
 from hilplant.bench.plant import Plant
+from hilplant.bench.screen_parts import ScreenFile
 from hilplant.bench.wiper import SIDES
 from hilplant.checked_yaml.spot import Spot
+from hilplant.units import RAD_PER_DEG
 
 #: Beyond these nobody has built a wiper: mass of all that moves [kg], force of an arm [N], motor constant [V s],
 #: resistance [ohm], and below this a step is nothing but slow [s].
@@ -17,6 +20,8 @@ MOST_FORCE_N = 200.0
 MOST_CONSTANT_V_S = 5.0
 MOST_RESISTANCE_OHM = 100.0
 LEAST_STEP_S = 1e-5
+#: Below this lean [rad] an angle looks like one from the horizontal.
+LEAST_LEAN_RAD = math.pi / 4.0
 
 _RELAYS = ("relay_on", "relay_fast")
 
@@ -27,6 +32,7 @@ def note_doubts(spot: Spot, description: BenchDescription, plant: Plant) -> None
         spot.warn("step_s", text=f"step_s {description.step_s:g} is so short that no loop keeps it; 0.001 is usual")
     _doubt_motor(spot.inner("plant", "motor"), plant.motor)
     _doubt_wiper(spot.inner("plant"), plant)
+    _doubt_screen(spot.inner("plant", "screen"), plant.screen)
     _doubt_safety(spot.inner("bus"), description)
 
 
@@ -57,6 +63,16 @@ def _doubt_wiper(spot: Spot, plant: Plant) -> None:
             spot.warn("blades", side, "force_n", text=text)
     if plant.mechanics.clearance_m == 0.0:
         spot.warn("linkage", "points_m", text="the blades cross on the screen")
+
+
+def _doubt_screen(spot: Spot, screen: ScreenFile | None) -> None:
+    """Warn of an angle that may have been told from the horizontal, unless it is said from which axis it is."""
+    if screen is None or "angle_from" in screen.model_fields_set or abs(screen.angle_rad) >= LEAST_LEAN_RAD:
+        return
+    degrees = abs(screen.angle_rad) / RAD_PER_DEG
+    text = f"angle_rad is from the vertical, and the screen of a car leans 50 to 70 deg back, not {degrees:.3g}; "
+    text += "if this is the rake from the horizontal, write 'angle_from: horizontal', else 'angle_from: vertical'"
+    spot.warn("angle_rad", text=text)
 
 
 def _doubt_safety(spot: Spot, description: BenchDescription) -> None:

@@ -116,7 +116,7 @@ def _surroundings(load: AnyLoad | None, screen: ScreenFile | None, blades: Blade
     """Return what is known; what is missing has been noted, and the linkage is checked all the same."""
     left, right = (_air(entry) for entry in blades) if blades is not None else (Aerodynamics(), Aerodynamics())
     return Surroundings(
-        screen_angle_rad=screen.angle_rad if screen is not None else 0.0,
+        screen_angle_rad=screen.from_vertical_rad if screen is not None else 0.0,
         air=(left, right),
         points=load.points if isinstance(load, WholeWiper) else 1,
         needs_masses=isinstance(load, WholeWiper),

@@ -1,6 +1,7 @@
 """What the file of a windscreen may say: its angle, and the friction of blades on it."""
 
-from typing import Annotated, Self
+import math
+from typing import Annotated, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
@@ -74,11 +75,23 @@ class ScreenFile(Sourced):
 
     model_config = ConfigDict(title="hilplant screen")
 
-    angle_rad: QuarterTurn = Field(description="turn of the screen about the x axis, gamma of (4.47)")
+    angle_rad: QuarterTurn = Field(
+        description="how far the screen leans, a turn about the x axis: gamma of (4.47) from the vertical"
+    )
+    angle_from: Literal["vertical", "horizontal"] = Field(
+        default="vertical", description="from which axis angle_rad is; a car's rake is often told from the horizontal"
+    )
     velocity_limit_mm_s: Positive = Field(description="velocity beyond which a coefficient keeps its value")
     dry: DrySection = Field(description="friction of the dry screen")
     wet: WetSection = Field(description="friction of the wet screen")
     tacky: TackySection = Field(description="friction of the screen with little water")
+
+    @property
+    def from_vertical_rad(self) -> float:
+        """The angle from the vertical, gamma of (4.47) [rad]; 0 is an upright screen."""
+        if self.angle_from == "vertical":
+            return self.angle_rad
+        return math.copysign(math.pi / 2.0 - abs(self.angle_rad), self.angle_rad)
 
     def friction(self) -> Friction:
         """Return the coefficients as the models take them."""

@@ -74,6 +74,7 @@ def summary_lines(bench: Bench) -> list[str]:
         ),
         ("mass", f"{made.moving_mass_kg:.4g} kg moves" if made.moving_mass_kg else "none given"),
         *_projection(plant),
+        *_lean(plant),
         ("load", _load(plant)),
         ("park switch", CIRCUITS[int(bench.parameters.park_switch.circuit)]),
         ("bus", f"{len(bench.receive)} messages in, {len(bench.send)} out; {_rate(made)}"),
@@ -87,6 +88,14 @@ def _closeness(plant: Plant) -> str:
     closest = plant.mechanics.closest
     at = f"at crank angle {closest.crank_angle_rad / RAD_PER_DEG:.1f} deg"
     return f"nearest {at}, transmission angle {closest.transmission_angle_rad / RAD_PER_DEG:.1f} deg at {closest.where}"
+
+
+def _lean(plant: Plant) -> list[tuple[str, str]]:
+    """Return how far the screen leans, where there is one."""
+    if plant.screen is None:
+        return []
+    degrees = abs(plant.screen.from_vertical_rad) / RAD_PER_DEG
+    return [("screen", f"leans {degrees:.1f} deg from the vertical, {90.0 - degrees:.1f} deg from the horizontal")]
 
 
 def _projection(plant: Plant) -> list[tuple[str, str]]:

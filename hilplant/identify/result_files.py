@@ -101,8 +101,8 @@ def _screen(bench: Bench, name: str, row: Samples, facts: dict[str, Any]) -> dic
     for key, value in friction.items():
         if (kind := key.split("_")[0]) in groups:
             groups[kind][f"mu_{key}"] = float(value)
-    angle = bench.plant.screen.angle_rad if bench.plant.screen is not None else 0.0
-    head = {"angle_rad": angle, "velocity_limit_mm_s": float(friction["velocity_limit_mm_s"])}
+    angle = bench.plant.screen.from_vertical_rad if bench.plant.screen is not None else 0.0
+    head = {"angle_rad": angle, "angle_from": "vertical", "velocity_limit_mm_s": float(friction["velocity_limit_mm_s"])}
     return _document(f"{name} screen", facts, "Friction") | head | groups
 
 

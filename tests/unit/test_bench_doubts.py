@@ -1,6 +1,7 @@
 """What is doubtful about a bench is a warning: it is shown and counted, and the bench runs all the same."""
 
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -73,6 +74,35 @@ def test_a_doubtful_part_is_a_warning_in_its_own_file(
     (tmp_path / "bench.yaml").write_text(f"{HEAD}plant: {{{part}: own.yaml}}\n")
     found = [str(warning) for warning in load_bench(tmp_path / "bench.yaml").warnings]
     assert any("own.yaml:" in warning and said in warning for warning in found), found
+
+
+SCREEN = shipped("config", "screens", "table_5_9.yaml").read_text()
+
+
+@pytest.mark.parametrize(
+    ("lines", "gravity", "doubted"),
+    [
+        ("angle_rad: 0.5236\n", "cos", True),  # 30 deg: from the vertical, or so it is read
+        ("angle_rad: -0.5236\n", "cos", True),
+        ("angle_rad: 0.5236\nangle_from: vertical\n", "cos", False),
+        ("angle_rad: 0.5236\nangle_from: horizontal\n", "sin", False),
+        ("angle_rad: 1.0472\n", "cos", False),
+        ("angle_rad: -1.0472\nangle_from: horizontal\n", "sin", False),
+    ],
+)
+def test_an_angle_that_looks_like_a_rake_from_the_horizontal_is_doubted(
+    tmp_path: Path, lines: str, gravity: str, doubted: bool
+) -> None:
+    own = SCREEN.replace("angle_rad: -0.57\nangle_from: vertical\n", lines)
+    assert own != SCREEN
+    (tmp_path / "own.yaml").write_text(own)
+    (tmp_path / "bench.yaml").write_text(f"{HEAD}plant: {{screen: own.yaml}}\n")
+    bench = load_bench(tmp_path / "bench.yaml")
+    angle = float(lines.split()[1])
+    expected = 9.81 * (math.cos(angle) if gravity == "cos" else abs(math.sin(angle)))
+    assert bench.plant.mechanics.wiper.gravity_m_s2 == pytest.approx(expected, rel=1e-3)
+    found = [str(warning) for warning in bench.warnings]
+    assert any("own.yaml:" in each and "'angle_from: horizontal'" in each for each in found) is doubted, found
 
 
 def test_check_shows_warnings_and_ends_with_0(tmp_path: Path) -> None:
