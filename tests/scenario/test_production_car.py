@@ -1,4 +1,4 @@
-"""The shipped motor of a production car turns as service manuals demand, without load at 12 V, and wipes a wet screen."""
+"""The shipped motor of a production car turns as service manuals demand at 12 V without load, and wipes."""
 
 import numpy as np
 import pytest
