@@ -68,8 +68,18 @@ def count(meaning: str, unit: str = "", maximum: float = 2.0**53, *, wraps: bool
     return Signal("", unit, 0.0, maximum, meaning, "count", wraps=wraps)
 
 
-def members(record: type[Any]) -> Iterator[tuple[str, Any]]:
-    """Yield name and declaration of each element: a Signal, an inner record's type, or None for an array."""
+def members(record: type[Any]) -> tuple[tuple[str, Any], ...]:
+    """Return name and declaration of each element: a Signal, an inner record's type, or None for an array."""
+    key: Any = record
+    return _listed(key)
+
+
+@cache
+def _listed(record: Any) -> tuple[tuple[str, Any], ...]:
+    return tuple(_members(record))
+
+
+def _members(record: type[Any]) -> Iterator[tuple[str, Any]]:
     for name, hint in get_type_hints(record, include_extras=True).items():
         signal = next((each for each in get_args(hint) if isinstance(each, Signal)), None)
         if signal is not None and get_origin(hint) is Annotated:

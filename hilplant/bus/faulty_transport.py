@@ -94,6 +94,7 @@ class FaultyTransport:
         self._transport = transport
         self._in, self._out = _Way(), _Way()
         self._now_ns = 0
+        self._spoken: list[Frame] = []
         self.add(faults)
 
     def add(self, faults: Sequence[PlacedFault]) -> None:
@@ -113,6 +114,10 @@ class FaultyTransport:
         self._out.add_own(now_ns)
         self._flush()
 
+    def own_end(self) -> "OwnEnd":
+        """Return an end for another sender in this process: its frames go to the bus, and are heard here too."""
+        return OwnEnd(self._transport, self._spoken)
+
     @property
     def up(self) -> bool:
         """Whether frames can pass; no longer when the node is off the bus."""
@@ -125,14 +130,16 @@ class FaultyTransport:
 
     def receive(self, limit: int) -> list[Frame]:
         """Return the frames that have arrived, at most `limit`."""
-        if self._in.idle and self._out.idle:
+        if self._in.idle and self._out.idle and not self._spoken:
             return self._transport.receive(limit)
+        self._hear_own()
         for frame in self._transport.receive(limit):
             self._in.add(frame, self._now_ns)
         return [frame for frame, _ in self._arrived(limit)]
 
     def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
         """Return what has arrived, each frame with how long it has waited; one that was held back has not."""
+        self._hear_own()
         for frame, waited_ns in self._transport.receive_late(limit):
             self._in.add(frame, self._now_ns, waited_ns)
         return self._arrived(limit)
@@ -159,6 +166,11 @@ class FaultyTransport:
         """Give the interface back."""
         self._transport.close()
 
+    def _hear_own(self) -> None:
+        for frame in self._spoken:
+            self._in.add(frame, self._now_ns)
+        self._spoken.clear()
+
     def _arrived(self, limit: int) -> list[tuple[Frame, int | None]]:
         arrived = self._in.due(self._now_ns, limit)
         return [] if self._out.cut_off else arrived
@@ -172,3 +184,38 @@ class FaultyTransport:
             if result is not SendResult.SENT:
                 return result
         return SendResult.SENT
+
+
+class OwnEnd:
+    """Where another node in this process sends; what it would hear is nobody's."""
+
+    missed = 0
+
+    def __init__(self, transport: Transport, spoken: list[Frame]) -> None:
+        self._transport, self._spoken = transport, spoken
+
+    @property
+    def up(self) -> bool:
+        """Whether frames can pass."""
+        return True
+
+    def receive(self, limit: int) -> list[Frame]:
+        """Return nothing."""
+        return []
+
+    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
+        """Return nothing."""
+        return []
+
+    def send(self, frame: Frame) -> SendResult:
+        """Give a frame to the bus and to the node here, to which it comes also while the interface takes none."""
+        self._transport.send(frame)
+        self._spoken.append(frame)
+        return SendResult.SENT
+
+    def reopen(self) -> bool:
+        """Say that it is open."""
+        return True
+
+    def close(self) -> None:
+        """Nothing is open here."""

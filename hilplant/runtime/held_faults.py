@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.bus.faulty_transport import FaultyTransport
 from hilplant.failure import Failure
 from hilplant.faults.acting import ActingFaults
 from hilplant.faults.player import signal_row
@@ -54,6 +55,11 @@ class HeldFaults:
         self._rebased: dict[int, float] = {}
         self._next_end_ns = _NEVER_NS
         self._step_ns = round(acting.step_s * SECOND_NS)
+
+    @property
+    def transport(self) -> FaultyTransport:
+        """What lies between the node and its interface."""
+        return self._acting.transport
 
     def insert(self, command: ChannelCommand, now_ns: int) -> str:
         """Insert the fault that a client's command describes, its times counted from now; returns why not, if not.

@@ -30,11 +30,12 @@ from hilplant.units import MICROSECOND_NS, SECOND_NS
 
 WAITING, RUNNING, SAFE, DEGRADED, STOPPED, BEHIND = (float(index) for index in range(len(MODES)))
 
-_FIRST_INPUT = 2
-_FIRST_OUTPUT = _FIRST_INPUT + len(INPUTS)
-_FIRST_STATUS = _FIRST_OUTPUT + len(OUTPUTS)
+#: Where a row's inputs, outputs and status begin.
+FIRST_INPUT = 2
+FIRST_OUTPUT = FIRST_INPUT + len(INPUTS)
+FIRST_STATUS = FIRST_OUTPUT + len(OUTPUTS)
 
-_FIRST_STATE = _FIRST_STATUS + len(STATUS)
+_FIRST_STATE = FIRST_STATUS + len(STATUS)
 
 #: Where the owners of the inputs begin in a row, indices of ``commands.OWNERS``.
 FIRST_OWNER = _FIRST_STATE + len(STATE_INDEX)
@@ -118,12 +119,13 @@ class Loop:
         self.lost_time = LostTime(late.lost_time)
         self._degraded_until_ns = -1
         self._behind = False
-        self._line = np.zeros(ROW_WIDTH)
-        self._inputs = self._line[_FIRST_INPUT:_FIRST_OUTPUT]
-        self._outputs = self._line[_FIRST_OUTPUT:_FIRST_STATUS]
-        self._status = self._line[_FIRST_STATUS:_FIRST_STATE]
-        self._before = self._line[_FIRST_STATE:FIRST_OWNER]
-        self._owners = self._line[FIRST_OWNER:]
+        #: The row of the tick that was done last.
+        self.line = np.zeros(ROW_WIDTH)
+        self._inputs = self.line[FIRST_INPUT:FIRST_OUTPUT]
+        self._outputs = self.line[FIRST_OUTPUT:FIRST_STATUS]
+        self._status = self.line[FIRST_STATUS:_FIRST_STATE]
+        self._before = self.line[_FIRST_STATE:FIRST_OWNER]
+        self._owners = self.line[FIRST_OWNER:]
         self._parameters = plant.parameter_row.copy()
         self._ownership = Ownership(node.values, self._owners)
         #: Takes commands at a tick's start; None until :meth:`listen`.
@@ -136,7 +138,7 @@ class Loop:
 
     def listen(self, mailbox: Mailbox | None, tell: Callable[[ChannelCommand], None], acting: ActingFaults) -> Intake:
         """Take commands and faults at each tick's start, and give answers and events to `tell`."""
-        faults = HeldFaults(acting, (self._line, self._parameters), self._node.counts, tell)
+        faults = HeldFaults(acting, (self.line, self._parameters), self._node.counts, tell)
         self.intake = Intake(mailbox, self._ownership, faults, tell)
         return self.intake
 
@@ -197,10 +199,10 @@ class Loop:
 
     def _record(self) -> None:
         if self._ring is not None:
-            self._line[0] = self.progress.ticks
-            self._line[1] = self._bus_ns
+            self.line[0] = self.progress.ticks
+            self.line[1] = self._bus_ns
             self._status[:] = self._published[len(OUTPUTS) :]
-            self._ring.next_row()[:] = self._line
+            self._ring.next_row()[:] = self.line
             self._ring.commit()
         self.progress.ticks += 1
 

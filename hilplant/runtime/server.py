@@ -92,6 +92,7 @@ class Summary:
     fell_behind: bool = False
     recording_complete: bool = True
     controller_stopped: bool = False
+    scenario_ruling: str = ""
     first_tick_monotonic_ns: int = 0
     counts: dict[str, int] = field(default_factory=dict)
     out_of_range: dict[str, float] = field(default_factory=dict)
@@ -99,7 +100,9 @@ class Summary:
 
     @property
     def is_sound(self) -> bool:
-        """Whether the run was what it was to be: in real time as the bench wants it, and recorded without a gap."""
+        """Whether the run was what it was to be: in time as the bench wants it, recorded without a gap, and passed."""
+        if self.scenario_ruling not in ("", "pass"):
+            return False
         return self.recording_complete and not (self.stopped_by_overrun or self.fell_behind or self.controller_stopped)
 
 

@@ -3,34 +3,37 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, WithJsonSchema
+from pydantic import Field, WithJsonSchema, field_validator
 
 from hilplant import resources
 from hilplant.arrays import Floats
 from hilplant.bench.description import InitialSection
 from hilplant.bench.durations import Seconds, SomeSeconds
 from hilplant.bench.values import signal_value
-from hilplant.checked_yaml.checked import Checked
+from hilplant.checked_yaml.checked import Checked, wrong
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.checked_yaml.reading import Reading
 from hilplant.checked_yaml.yaml_reader import Document, Location
 from hilplant.declaration import Signal
 from hilplant.ecu.stalk import StalkTurn
 from hilplant.failure import Failure
-from hilplant.faults.written import FaultEntry, Written
+from hilplant.faults.written import SIGNALS, FaultEntry, Written
 from hilplant.signals import INPUT_INDEX, INPUTS
 from hilplant.simulation.scenario_schema import EntriesOfInputs
 from hilplant.simulation.scenario_sections import read_expectations, read_stalk
 from hilplant.simulation.stimuli import GENERATORS, Generated, Shape
 from hilplant.units import SECOND_NS
-from hilplant.verdicts.binding import Placed
+from hilplant.verdicts.binding import Known, Placed, condition_of
 
 #: Name of the value by which a signal takes that of another.
 _SAME = "same"
+#: Time 0 is the tick after the first in which no command is missing.
+FIRST_COMMAND = "first command"
+DEFAULT_START_S = 60.0
 
 _Pair = Annotated[list[Any], Field(min_length=2, max_length=2)]
 
@@ -52,6 +55,20 @@ class ScenarioFile(Checked):
     marks: dict[str, Seconds] = Field(default={}, description="times [s] with names")
     faults: list[FaultEntry] = Field(default=[], description="faults that are inserted; hilplant faults lists all")
     expect: list[dict[str, Any]] = Field(default=[], description="what is expected of the run")
+    start: Literal["first tick", "first command"] | dict[str, Any] = Field(
+        default="first tick",
+        description="what time 0 waits for where there is a loop: signals, as in `when` of faults",
+    )
+    start_within: SomeSeconds = Field(default=DEFAULT_START_S, description="how long time 0 may be waited for [s]")
+
+    @field_validator("start")
+    @classmethod
+    def _start_sound(cls, start: Any) -> Any:
+        try:
+            condition_of(start if isinstance(start, dict) else {}, Known(1.0, 1.0, SIGNALS, {}))
+        except ValueError as error:
+            raise wrong(text=str(error)) from None
+        return start
 
 
 class _Ramp(Checked):
@@ -81,9 +98,10 @@ class Entry:
 class Scenario:
     """Entries of each named input by its index, and what differs from the bench's initial state.
 
-    Time 0 is the first tick. `stalk` are the driver's movements, `marks` times [s] with names, `faults` what is
-    inserted, each with its file and line, `expect` what is expected of the run; `title`, `requirement`, `bench` as
-    written; `path` and `text` are the file's.
+    Time 0 is the first tick; where there is a loop the one after that in which `start` first held, which is
+    `FIRST_COMMAND` or a condition, and has to come within `start_within` [s]. `stalk` are the driver's movements,
+    `marks` times [s] with names, `faults` what is inserted, each with its file and line, `expect` what is expected of
+    the run; `title`, `requirement`, `bench` as written; `path` and `text` are the file's.
     """
 
     seconds: float
@@ -98,6 +116,8 @@ class Scenario:
     bench: str | None = None
     path: Path = Path()
     text: str = ""
+    start: str | dict[str, Any] = field(default_factory=dict)
+    start_within: float = DEFAULT_START_S
 
     def input_rows(self, input_row: NDArray[np.float64], step_ns: int) -> NDArray[np.float64]:
         """Return the inputs of every tick; times are rounded to ticks, unnamed inputs keep `input_row`.
@@ -111,10 +131,16 @@ class Scenario:
         if not ticks:
             raise Failure(f"a scenario of {self.seconds:g} s is shorter than a tick of {step_ns / SECOND_NS:g} s")
         rows = np.tile(input_row, (ticks, 1))
-        for index, entries in self.entries.items():
-            for entry in entries:
-                _apply(rows[:, index], entry, step_ns, INPUTS[index])
+        for index in self.entries:
+            rows[:, index] = self.column(index, input_row, step_ns)
         return rows
+
+    def column(self, index: int, input_row: Floats, step_ns: int) -> Floats:
+        """Return one input of every tick; Failure where a ramp begins at no number."""
+        column = np.full(round(self.seconds * SECOND_NS / step_ns), input_row[index])
+        for entry in self.entries.get(index, ()):
+            _apply(column, entry, step_ns, INPUTS[index])
+        return column
 
 
 def load_scenario(name: str | Path) -> Scenario:
@@ -152,6 +178,8 @@ def load_scenario(name: str | Path) -> Scenario:
         top.bench,
         path,
         reading.sources[document.file],
+        {} if top.start == "first tick" else top.start,
+        top.start_within,
     )
 
 

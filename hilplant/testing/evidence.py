@@ -11,9 +11,9 @@ from hilplant.bus.frame import Frame
 from hilplant.bus.protection import Checker, FrameCheck, Protection
 from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, STATUS_COLUMNS
 from hilplant.recording.reader import Recording, matrix
-from hilplant.runtime.commands import COMES, GOES, KINDS
-from hilplant.runtime.loop import STOPPED
-from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS, STATUS_INDEX
+from hilplant.runtime.commands import COMES, GOES, KINDS, START
+from hilplant.runtime.loop import FIRST_OUTPUT, FIRST_STATUS, STOPPED
+from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, STATUS_INDEX
 from hilplant.testing.known_signals import DatabaseSignals
 from hilplant.units import SECOND_NS
 from hilplant.verdicts.arrays import Trace
@@ -22,12 +22,10 @@ from hilplant.verdicts.frames import FrameTimes
 
 Floats = NDArray[np.float64]
 
-_FIRST_OUTPUT = 2 + len(INPUTS)
-_FIRST_STATUS = _FIRST_OUTPUT + len(OUTPUTS)
-_MODE = _FIRST_STATUS + STATUS_INDEX["mode"]
+MODE = FIRST_STATUS + STATUS_INDEX["mode"]
 _EDGES = {KINDS[COMES]: True, KINDS[GOES]: False}
 #: Counts whose rise says that time or data were lost in that tick.
-_LOSSES = [_FIRST_STATUS + STATUS_INDEX[name] for name in ("overruns", "missed_frame", "ring_lost", "queue_full")]
+LOSSES = [FIRST_STATUS + STATUS_INDEX[name] for name in ("overruns", "missed_frame", "ring_lost", "queue_full")]
 
 
 class FaultEdge(NamedTuple):
@@ -42,7 +40,8 @@ class FaultEdge(NamedTuple):
 class Evidence:
     """Rows as the loop writes them (tick, deadline, inputs, outputs, status), and every frame with its tick.
 
-    `edges` are the ticks at which faults of a name came and went.
+    `edges` are the ticks at which faults of a name came and went; `start` is the step, counted as the deadlines are,
+    that is the scenario's time 0.
     """
 
     step_ns: int
@@ -50,39 +49,42 @@ class Evidence:
     frame_ticks: NDArray[np.int64]
     frames: Sequence[Frame]
     edges: Sequence[FaultEdge] = ()
+    start: int = 0
 
     def fault_marks(self) -> dict[str, float]:
         """Return when each fault first came and last went [s], by a name for people; what stays has no end."""
         found: dict[str, float] = {}
         for each in self.edges:
+            time_s = (each.tick - self.start) * self.step_ns / SECOND_NS
             if each.there:
-                found.setdefault(each.name, each.tick * self.step_ns / SECOND_NS)
+                found.setdefault(each.name, time_s)
             else:
-                found[f"{each.name} ends"] = each.tick * self.step_ns / SECOND_NS
+                found[f"{each.name} ends"] = time_s
         return found
 
     def trace(self, expectations: Iterable[Expectation], database: DatabaseSignals, ticks: int) -> Trace:
-        """Return what these expectations look at, in the first `ticks` periods; the server's last tick is left out."""
+        """Return what these expectations look at, in `ticks` periods from time 0, without the server's last one."""
         wanted = list(expectations)
-        rows = self.rows[self.rows[:, _MODE] != STOPPED]
+        rows = self.rows[self.rows[:, MODE] != STOPPED]
         places = (rows[:, 1] / self.step_ns).round().astype(np.int64)
-        rows, places = rows[places < ticks], places[places < ticks]
-        count = int(places[-1]) + 1 if len(places) else 0
+        within = places < self.start + ticks
+        rows, places = rows[within], places[within]
+        count = max(self.start, int(places[-1]) + 1 if len(places) else 0)
         seen = np.zeros(count, np.bool_)
         seen[places] = True
-        lost = np.diff(rows[:, _LOSSES], axis=0, prepend=0.0).any(axis=1)
+        lost = np.diff(rows[:, LOSSES], axis=0, prepend=0.0).any(axis=1)
         seen[places[lost]] = False
         names = dict.fromkeys(name for each in wanted for name in each.signals)
-        signals = {name: self._signal(name, rows, places, count, database) for name in names}
+        signals = {name: self._signal(name, rows, places, count, database)[self.start :] for name in names}
         messages = {each.rule.message for each in wanted if isinstance(each.rule, Frames)}
         frames = {name: self._frame_times(database, name, count) for name in messages}
-        return Trace(self.step_ns / SECOND_NS, signals, seen, frames)
+        return Trace(self.step_ns / SECOND_NS, signals, seen[self.start :], frames)
 
     def signal(self, name: str, database: DatabaseSignals) -> Floats:
-        """Return one signal over all rows."""
+        """Return one signal over all rows from time 0 on."""
         places = (self.rows[:, 1] / self.step_ns).round().astype(np.int64)
         count = int(places[-1]) + 1 if len(places) else 0
-        return self._signal(name, self.rows, places, count, database)
+        return self._signal(name, self.rows, places, count, database)[self.start :]
 
     def _signal(
         self, name: str, rows: Floats, places: NDArray[np.int64], count: int, database: DatabaseSignals
@@ -100,7 +102,7 @@ class Evidence:
 
     def _decoded(self, message: Any, signal: str) -> tuple[NDArray[np.int64], Floats]:
         places = self._places(message)
-        found = [(index, _value(message, self.frames[index].data, signal)) for index in places]
+        found = [(index, value_of(message, self.frames[index].data, signal)) for index in places]
         kept = [(index, value) for index, value in found if value is not None]
         ticks = self.frame_ticks[[index for index, _ in kept]] if kept else np.zeros(0, np.int64)
         return ticks, np.array([value for _, value in kept], np.float64)
@@ -116,22 +118,25 @@ class Evidence:
     def _frame_times(self, database: DatabaseSignals, name: str, count: int) -> FrameTimes:
         message, protection = database.messages[name], database.protections.get(name)
         places = [index for index in self._places(message) if self.frame_ticks[index] < count]
-        counter, crc = _checked(protection, [self.frames[index].data for index in places])
-        ticks = self.frame_ticks[places] if places else np.zeros(0, np.int64)
-        return FrameTimes(ticks, float(message.cycle_time or 0.0), counter, crc)
+        counter, crc = checked_frames(protection, [self.frames[index].data for index in places])
+        ticks = self.frame_ticks[places] - self.start if places else np.zeros(0, np.int64)
+        kept = ticks >= 0
+        counter, crc = (found[kept] if len(found) else found for found in (counter, crc))
+        return FrameTimes(ticks[kept], float(message.cycle_time or 0.0), counter, crc)
 
 
 def column_of(name: str) -> int | None:
     """Return the place of a plant's signal in a row: outputs first, then status, then inputs; None for another's."""
     if name in OUTPUT_INDEX:
-        return _FIRST_OUTPUT + OUTPUT_INDEX[name]
+        return FIRST_OUTPUT + OUTPUT_INDEX[name]
     if name in STATUS_INDEX:
-        return _FIRST_STATUS + STATUS_INDEX[name]
+        return FIRST_STATUS + STATUS_INDEX[name]
     return 2 + INPUT_INDEX[name] if name in INPUT_INDEX else None
 
 
 def recorded(recording: Recording) -> Evidence:
-    """Return what a recording holds."""
+    """Return what a recording holds; time 0 is where a scenario began to be played, else the first tick."""
+    start: int | None = None
     rows, ticks, frames, edges = [], [], [], []
     step_ns = recording.run.step_ns
     for batch in recording.batches():
@@ -144,7 +149,12 @@ def recorded(recording: Recording) -> Evidence:
         for event in batch.column("events").flatten().to_pylist():
             if event["kind"] in _EDGES:
                 edges.append(FaultEdge(round(event["time_ns"] / step_ns), event["text"], _EDGES[event["kind"]]))
-    return Evidence(step_ns, np.concatenate(rows), np.array(ticks, np.int64), frames, edges)
+            if event["kind"] == KINDS[START] and start is None:
+                start = round(event["time_ns"] / step_ns)
+    whole = np.concatenate(rows)
+    if start is None:
+        start = round(whole[0, 1] / step_ns) if len(whole) else 0
+    return Evidence(step_ns, whole, np.array(ticks, np.int64), frames, edges, start)
 
 
 def _held(values: Floats, places: NDArray[np.int64]) -> Floats:
@@ -157,7 +167,7 @@ def _held(values: Floats, places: NDArray[np.int64]) -> Floats:
     return np.where(source >= 0, values[source], np.nan)
 
 
-def _value(message: Any, data: bytes, signal: str) -> float | None:
+def value_of(message: Any, data: bytes, signal: str) -> float | None:
     """Decode one signal; None where the frame is too short, or its page is another."""
     if len(data) < message.length:
         return None
@@ -165,7 +175,9 @@ def _value(message: Any, data: bytes, signal: str) -> float | None:
     return None if value is None else float(value)
 
 
-def _checked(protection: Protection | None, payloads: Sequence[bytes]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def checked_frames(
+    protection: Protection | None, payloads: Sequence[bytes]
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Say of each frame whether its counter and its checksum are right; one counter that jumps counts once."""
     counter, crc = [], []
     checker = Checker(protection) if protection is not None else None

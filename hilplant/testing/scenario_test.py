@@ -1,6 +1,6 @@
 """One scenario as a test: run it, or take a recording of it, and judge all that it expects."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -28,6 +28,12 @@ class Judged:
     judgement: Judgement
 
 
+def ruling_of(judged: Sequence[Judged]) -> Ruling:
+    """Return the worst ruling; blocked where nothing was expected, because nothing was tested."""
+    found = {each.judgement.ruling for each in judged}
+    return next((ruling for ruling in RULINGS if ruling in found), "blocked")
+
+
 @dataclass(frozen=True)
 class ScenarioTest:
     """A scenario that was run, with its evidence, and what came of each expectation.
@@ -53,9 +59,8 @@ class ScenarioTest:
 
     @property
     def ruling(self) -> Ruling:
-        """The worst ruling; a scenario that expects nothing is blocked, because nothing was tested."""
-        found = {each.judgement.ruling for each in self.judged}
-        return next((ruling for ruling in RULINGS if ruling in found), "blocked")
+        """The worst ruling of all that is expected."""
+        return ruling_of(self.judged)
 
 
 def run_virtually(
@@ -65,7 +70,7 @@ def run_virtually(
     database = database_signals(bench.sources, protections_of(bench))
     expectations = expected(scenario, database, bench.step_ns)
     virtual = VirtualBench(bench, scenario, stand_in)
-    virtual.run(ticks_of(scenario, bench.step_ns))
+    virtual.run_scenario()
     options = (f" --bench {bench_name}" if bench_name else "") + ("" if stand_in else " --ecu external")
     rerun = f"hilplant test {scenario.path}{options}"
     done = judged(scenario, bench.name, virtual.evidence(), database, expectations, rerun)

@@ -21,6 +21,7 @@ from hilplant.verdicts.expectations import (
     Settles,
     Stays,
     Steps,
+    Window,
     is_over,
 )
 from hilplant.verdicts.judgement import NO_WINDOW, Judgement, Piece, combine, unless_hidden
@@ -75,11 +76,25 @@ class LiveExpectation:
         self._before = row
 
     @property
+    def decided(self) -> bool:
+        """Whether no later tick can change the verdict."""
+        if self._first is None or self._open:
+            return False
+        ended = self._over or (bool(self._window.until) and self._end.arrived)
+        once = isinstance(self._rule, Comes | Settles | Stays) and not self._window.during
+        return ended or (once and bool(self._done))
+
+    @property
     def failed(self) -> bool:
         """Whether it is violated already, and nothing was lost before that."""
         broken = [(first, stretch.broken) for first, stretch in self._open if stretch.broken is not None]
         lost = [any(first <= gap <= tick for gap in self._lost_ticks) for first, tick in broken]
         return not all(lost) or self.judgement().ruling == "fail"
+
+    def judgement_now(self) -> Judgement:
+        """Return the verdict on what is decided so far, and on what is violated although it goes on."""
+        broken = {first: stretch.close(True) for first, stretch in self._open if stretch.broken is not None}
+        return self._judgement(self._done | broken)
 
     def end(self) -> Judgement:
         """Return the verdict: no more ticks will come."""
@@ -90,9 +105,12 @@ class LiveExpectation:
 
     def judgement(self) -> Judgement:
         """Return the verdict on what is decided so far."""
+        return self._judgement(self._done)
+
+    def _judgement(self, done: Mapping[int, Piece]) -> Judgement:
         if self._first is None:
             return Judgement("blocked", reason=NO_WINDOW)
-        pieces = [(first, self._done[first]) for first in self._begun if first in self._done]
+        pieces = [(first, done[first]) for first in self._begun if first in done]
         gaps = [any(first <= lost <= piece.tick for lost in self._lost_ticks) for first, piece in pieces]
         return unless_hidden(combine([piece for _, piece in pieces], gaps), self._hidden)
 
@@ -150,6 +168,34 @@ class LiveExpectation:
         self._open = left
 
 
+class LiveWindow:
+    """The window of a rule that is judged afterwards: where it begins and ends, on a run that goes on."""
+
+    def __init__(self, window: Window) -> None:
+        self._window, self._start, self._end = window, _Steps(window.after), _Steps(window.until)
+        self._tick = -1
+        self._before: Row | None = None
+        self._first: int | None = None
+        self._last: int | None = None
+
+    def take(self, row: Row) -> None:
+        """Take the next tick."""
+        self._tick += 1
+        if self._first is None and self._start.reached(self._tick, row, self._before):
+            self._first = self._tick
+            self._end.begin(self._tick)
+            if is_over(self._window.until, self._tick):
+                self._last = self._first
+        if self._first is not None and self._last is None and self._window.until:
+            self._last = self._tick if self._end.reached(self._tick, row, self._before) else None
+        self._before = row
+
+    def bounds(self, ticks: int) -> tuple[int | None, int]:
+        """Return first tick, None where none is, and the one behind the last, in a run of that length."""
+        last = ticks if self._last is None else self._last
+        return (None if self._first is None or self._first >= last else self._first), last
+
+
 def margin(condition: Condition, row: Row, before: Row | None) -> float:
     """Return how far inside its limits a condition is at a tick; -inf where a signal has no value yet."""
     lowest = math.inf
@@ -174,6 +220,11 @@ class _Steps:
 
     def __init__(self, steps: Steps) -> None:
         self._steps, self._done, self._tick = steps, 0, 0
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the instant has come."""
+        return self._done == len(self._steps)
 
     def begin(self, tick: int) -> None:
         """Count from `tick` on; a condition is looked for behind it."""

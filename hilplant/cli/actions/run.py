@@ -1,12 +1,17 @@
 """What `hilplant run` does: a bench on its interface, with a recorder beside it when one is asked for."""
 
+from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hilplant.bench import Bench, load_bench
+from hilplant.bench.assembly import initial_state
 from hilplant.bus.mapping import NO_CHOICE
 from hilplant.channel.beside_loop import announced
+from hilplant.cli.actions.live_judge import Verdict, judging
 from hilplant.cli.voice import Voice
 from hilplant.ecu.loop_controller import Inside, seated
 from hilplant.failure import Failure
@@ -15,6 +20,8 @@ from hilplant.recording.beside_loop import RecordTo, recording
 from hilplant.runtime.loop import Loop
 from hilplant.runtime.scheduling import Privilege
 from hilplant.runtime.server import StopRequest, Summary, ended_by_signals, serve
+from hilplant.simulation.player import ScenarioPlayer
+from hilplant.simulation.scenario import Scenario, load_scenario
 from hilplant.units import MILLISECOND_NS
 
 #: Counts that the line before the faults has told already.
@@ -33,9 +40,13 @@ def run_daemon(  # noqa: PLR0913, PLR0917
     inside: Inside | None = None,
     door: bool = True,
     page: PageOptions | None = None,
+    scenario: Path | None = None,
 ) -> Summary:
     """Serve a bench and say on the terminal how it started and how it ended."""
     bench = load_bench(name)
+    played = None if scenario is None else load_scenario(scenario)
+    if played is not None:
+        bench = replace(bench, state_row=initial_state(bench.parameters, bench.initial | played.initial))
     if channel is not None:
         bench = replace(bench, interface={**bench.interface, "channel": channel})
     seat: LoopSeat | OwnLoopSeat | None = None
@@ -53,8 +64,16 @@ def run_daemon(  # noqa: PLR0913, PLR0917
         ):
             if served is not None:
                 voice.say(f"page: {served.said}")
-            on_start = partial(_say_start, bench, voice)
-            summary = serve(bench, seconds, ring, stop, on_start, partial(_prepare, seat))
+            on_start, prepare = partial(_say_start, bench, voice), partial(_prepare, seat)
+            if played is None:
+                summary = serve(bench, seconds, ring, stop, on_start, prepare)
+            else:
+                judge = judging(name, played.path, ring, bench.loop.cpu) if played.expect else nullcontext(Verdict())
+                with judge as verdict:
+                    play = partial(_play, played, bench, stop, prepare)
+                    summary = serve(bench, seconds, ring, stop, on_start, play)
+                    ring.close_writer()
+                summary.scenario_ruling = verdict.ruling
     except Failure as failure:
         if summary is None:
             raise
@@ -78,6 +97,14 @@ def _prepare(seat: "LoopSeat | OwnLoopSeat | None", loop: Loop) -> None:
     loop.control = seat.drive
     if loop.intake is not None:
         loop.intake.reference = partial(_want, seat)
+
+
+def _play(scenario: Scenario, bench: Bench, stop: StopRequest, prepare: Callable[[Loop], None], loop: Loop) -> None:
+    """Let the loop play a scenario, and end with it."""
+    prepare(loop)
+    if loop.intake is not None:
+        faults = loop.intake.faults
+        loop.intake.source = ScenarioPlayer(scenario, bench, (faults, faults.transport, loop.line), stop.ask)
 
 
 def _say_start(bench: Bench, voice: Voice, privileges: list[Privilege]) -> None:

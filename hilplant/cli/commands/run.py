@@ -46,12 +46,16 @@ def run(  # noqa: PLR0913, PLR0917
     logs: PageLogs = LOGS,
     browser: Browser = False,
     stream: Stream = "",
+    scenario: Annotated[
+        Path | None, typer.Option(help="play this scenario, judge what it expects, and end with it")
+    ] = None,
     json_file: JsonFile = None,
 ) -> None:
     """Serve a bench on its CAN interface.
 
     Ends when the time is up, or on SIGTERM or Ctrl-C. With --controller, relays and supply are commanded inside the
-    loop in every tick, and not by frames; docs/control.md tells the names.
+    loop in every tick, and not by frames; docs/control.md tells the names. With --scenario, exit code 0 only if all
+    that it expects holds.
     """
     from hilplant.cli.actions.run import run_daemon
     from hilplant.ecu.loop_controller import Inside
@@ -66,7 +70,8 @@ def run(  # noqa: PLR0913, PLR0917
     to = None if record is None else RecordTo(record, rotation)
     claim(json_file)
     inside = None if controller is None else Inside(controller, reference or "3.14", budget_us)
-    summary = run_daemon(bench, seconds, to, channel, inside, not no_channel, page_options(page, logs, browser, stream))
+    page_wanted = page_options(page, logs, browser, stream)
+    summary = run_daemon(bench, seconds, to, channel, inside, not no_channel, page_wanted, scenario)
     missing = " | ".join(f"{given.name}: {given.fix}" for given in summary.privileges if not given.granted)
     write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))
     raise typer.Exit(0 if summary.is_sound else 1)
