@@ -62,6 +62,7 @@ class ReceivedMessage:
     timeout_ns: int = 0
     protection: Protection | None = None
     switches: tuple[int, ...] = ()  # which of `targets` are flags or choices
+    j1939: bool = False  # known by its parameter group, whoever sends it
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +134,7 @@ def received_message(
         timeout_ns,
         protection,
         tuple(place for place, made in enumerate(links) if made.plant.kind in ("flag", "choice")),
+        message.protocol == "j1939" and message.is_extended_frame,
     )
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.frame import Frame
+from hilplant.bus.j1939 import Groups
 from hilplant.bus.message_state import Incoming, Outgoing, value_fault
 from hilplant.bus.protection import FrameCheck
 from hilplant.bus.transport import SendResult, Transport
@@ -67,6 +68,7 @@ class Node:
         self._transport = transport
         self._settings = settings
         self._incoming = {(m.identifier, m.extended): Incoming(m) for m in received}
+        self._groups = Groups(m.identifier for m in received if m.j1939)
         self._supervised = [i for i in self._incoming.values() if i.message.timeout_ns]
         self._outgoing = [Outgoing(message) for message in sent]
         self._watched = sorted({index for message in sent for index in message.on_change})
@@ -163,6 +165,8 @@ class Node:
         if error or remote:
             return "error_frame" if error else "remote_frame"
         incoming = self._incoming.get((identifier, extended))
+        if incoming is None and extended:
+            incoming = self._incoming.get((self._groups.stated(identifier), True))
         if incoming is None:
             return self._foreign((identifier, extended))
         message = incoming.message

@@ -27,6 +27,8 @@ Name = Annotated[str, Field(min_length=1)]
 
 #: Of a longer value a message shows the beginning.
 _LONGEST_SHOWN = 60
+#: No key of ours is longer.
+_LONGEST_KEY = 60
 
 _WORDING = {
     "float_type": "must be a number",
@@ -147,7 +149,7 @@ def text_of(detail: ErrorDetails, known: Collection[str] = (), at: Location = ()
     if kind in ("wrong", "wrong_value"):
         return detail["msg"] if kind == "wrong" else f"{key} {detail['msg']}"
     if kind == "extra_forbidden":
-        return f"unknown key '{key}'{suggestion(key, known)}"
+        return f"unknown key '{key}'{suggestion(key, known)}" if _is_name(key) else "a line that begins with no key"
     if kind == "missing":
         return f"key '{key}' is missing"
     if kind.startswith("union_tag"):
@@ -156,6 +158,11 @@ def text_of(detail: ErrorDetails, known: Collection[str] = (), at: Location = ()
         return f"{key} {_length_text(detail)}"
     wording = _WORDING.get(kind) or detail["msg"].replace("Input should be", "must be", 1)
     return f"{key} {wording}, not {shown_value(value)}".lstrip()
+
+
+def _is_name(key: str) -> bool:
+    """Whether a key can be one; a line of a foreign file, such as a password's, is never shown."""
+    return len(key) <= _LONGEST_KEY and not set(":=$/+ ") & set(key)
 
 
 def _called(location: Sequence[str | int]) -> str:

@@ -4,14 +4,13 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
+from hilplant.bus.j1939 import BROADCAST, parameter_group
 from hilplant.failure import Failure
 from hilplant.measurements.frames import FrameSource, LoggedFrame
 
 #: Gives the values in a payload by the names of their signals; raises ValueError for a payload it cannot read.
 Reads = Callable[[bytes], Iterable[tuple[str, float]]]
 Key = tuple[int, bool]  # identifier, extended
-#: From this PDU format on a J1939 identifier has no destination: SAE J1939-21, 5.2.
-BROADCAST = 240
 
 
 class Reader(NamedTuple):
@@ -39,7 +38,7 @@ class Readers:
         """Add a reader of frames with this identifier."""
         self.exact.setdefault(key, []).append(reader)
         if j1939 and key[1]:
-            self.groups.setdefault(_group(key[0]), []).append(reader)
+            self.groups.setdefault(parameter_group(key[0]), []).append(reader)
 
     def of(self, frame: LoggedFrame) -> Reader | None:
         """Return what reads a frame, None where nothing does.
@@ -58,10 +57,13 @@ class Readers:
     def _find(self, key: Key) -> Reader | None:
         identifier, extended = key
         readers = self.exact.get(key, [])
-        group = self.groups.get(_group(identifier), []) if extended and not readers else []
+        group = self.groups.get(parameter_group(identifier), []) if extended and not readers else []
         if len(readers) > 1 or len(group) > 1:
             both = " and ".join(reader.message for reader in readers or group)
             raise Failure(f"identifier 0x{identifier:X} is that of {both}; leave one of them in the database")
+        if group and not group[0].prefix:
+            self._refuse_second_sender(identifier, group[0])
+            return group[0]
         if group:
             sender = f"{identifier & 0xFF:02X}"
             if (identifier >> 16) & 0xFF < BROADCAST:
@@ -69,11 +71,12 @@ class Readers:
             return group[0]._replace(prefix=f"{group[0].prefix}@{sender}")
         return readers[0] if readers else None
 
-
-def _group(identifier: int) -> int:
-    """Return the parameter group of a 29-bit identifier: without priority, source, and destination where it has one."""
-    group = (identifier >> 8) & 0x3FFFF
-    return group if (group >> 8) & 0xFF >= BROADCAST else group & 0x3FF00
+    def _refuse_second_sender(self, identifier: int, reader: Reader) -> None:
+        """Refuse one signal of the plant from two senders: its values would be mixed."""
+        for (other, _), found in self.found.items():
+            if found is reader:
+                both = f"0x{other:X} and 0x{identifier:X}"
+                raise Failure(f"{reader.message} comes from two senders, {both}; take --frames FILE.dbc")
 
 
 def readers_of(source: FrameSource) -> Readers:
@@ -122,7 +125,7 @@ def _by_bench(name: str) -> Readers:
             key = message.identifier, message.extended
             names = tuple(signals[index].name for index in message.targets)
             if key not in readers.exact:
-                readers.add(key, Reader(message.name, _bench_reads(message, names), units))
+                readers.add(key, Reader(message.name, _bench_reads(message, names), units), message.j1939)
     return readers
 
 

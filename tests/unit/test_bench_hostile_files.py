@@ -50,7 +50,19 @@ def test_a_number_beyond_sense_is_one_line(text: str, number: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "content", ["root:$6$secret:19000:0\nwww:secret:1\n", "- secret\n", "secret", "[secret", "a: secret"]
+    "content",
+    [
+        "root:$6$secret:19000:0\nwww:secret:1\n",
+        "root:$6$secret:19000:0:99999:7:::\nwww:$6$secret::\n",
+        "TOKEN=secret:\n",
+        "ssh-rsa secret:\n",
+        "/secret:\n",
+        "secret" * 20 + ":\n",
+        "- secret\n",
+        "secret",
+        "[secret",
+        "a: secret",
+    ],
 )
 @pytest.mark.parametrize(
     "naming", ["extends: {0}\nname: x\n", HEAD + "plant: {{motor: {0}}}\n", HEAD + "plant: {{screen: {0}}}\n",
