@@ -174,15 +174,16 @@ def figures(found: Identified) -> dict[str, Any]:
         "rms_park_edge_s": found.solution.noise.edge_s,
         "search_s": times.global_s,
         "search_evaluations": times.global_evaluations,
+        "search_evaluations_from_journal": times.global_evaluations - times.global_computed,
         "evaluations_per_s": times.evaluations_per_s,
         "refinement_s": times.local_s,
         "intervals_s": times.intervals_s,
+        "current_explained": not found.unexplained,
         "not_told": [verdict.name for verdict in found.verdicts if not verdict.identifiable],
     }
-    for verdict, interval in zip(found.verdicts, found.intervals, strict=True):
-        flat[verdict.name] = verdict.value
-        if verdict.identifiable:
-            flat[f"{verdict.name}_low"], flat[f"{verdict.name}_high"] = interval
+    flat |= {verdict.name: verdict.value for verdict in found.verdicts}
+    for name, (low, high) in found.told_intervals.items():
+        flat[f"{name}_low"], flat[f"{name}_high"] = low, high
     for index, comparison in enumerate(found.held_out, 1):
         flat[f"held_out_{index}_rms_current_a"] = comparison.error.rms_current_a
     return flat

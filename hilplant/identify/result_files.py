@@ -58,11 +58,9 @@ def _facts(found: Identified, origin: ResultOrigin) -> dict[str, Any]:
     facts |= {"rms_current_a": left.current_a, "rms_park_edge_s": left.edge_s}
     if found.task.stages != ALL:
         facts["stages"] = list(found.task.stages)
-    facts["intervals_95"] = {
-        verdict.name: [interval.low, interval.high]
-        for verdict, interval in zip(found.verdicts, found.intervals, strict=True)
-        if verdict.identifiable
-    }
+    facts["intervals_95"] = {name: [low, high] for name, (low, high) in found.told_intervals.items()}
+    if found.unexplained:
+        facts["unexplained"] = found.unexplained
     facts["not_told"] = [verdict.name for verdict in found.verdicts if not verdict.identifiable]
     return facts
 

@@ -21,7 +21,7 @@ from hilplant.identify.profile import ConfidenceInterval, profile
 from hilplant.identify.residuals import LeastSquares, expected_noise
 from hilplant.identify.stages import ALL, GLOBAL_SEARCH, StagedValues, no_search
 from hilplant.identify.uncertainty import Identifiability, Spread, spread, verdicts
-from hilplant.identify.validation import EXPLAINED, Comparison, compare
+from hilplant.identify.validation import EXPLAINED, Comparison, compare, unexplained
 from hilplant.measurements.measurement import Samples
 from hilplant.models.load import REDUCED
 from hilplant.models.records import PARAMETER_INDEX
@@ -64,6 +64,12 @@ class Times(NamedTuple):
     intervals_s: float
 
     @property
+    def journal_note(self) -> str:
+        """How many evaluations were answered by the journal of an earlier run, and so took no time."""
+        answered = self.global_evaluations - self.global_computed
+        return f"{answered} of them from the journal of an earlier run" if answered > 0 else ""
+
+    @property
     def evaluations_per_s(self) -> float:
         """Simulations of all recordings that the search made in a second."""
         return self.global_computed / max(self.global_s, 1e-9)
@@ -87,6 +93,19 @@ class Identified(NamedTuple):
     held_out: list[Comparison]
     times: Times
     final_cost: float
+
+    @property
+    def unexplained(self) -> list[str]:
+        """A line for each fitted recording that the model does not explain."""
+        return unexplained(self.fitted)
+
+    @property
+    def told_intervals(self) -> dict[str, ConfidenceInterval]:
+        """95 % intervals by name of what is identifiable; none at all for a model that does not fit."""
+        if self.unexplained:
+            return {}
+        told = zip(self.verdicts, self.intervals, strict=True)
+        return {verdict.name: interval for verdict, interval in told if verdict.identifiable}
 
 
 def identify_partly(task: Task) -> StagedValues:

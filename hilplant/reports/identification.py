@@ -9,7 +9,7 @@ from hilplant.atomic_write import write_text
 from hilplant.identify.result_files import ResultOrigin
 from hilplant.identify.starting_point import StartingPoint
 from hilplant.identify.three_stages import Identified
-from hilplant.identify.validation import Comparison, unexplained
+from hilplant.identify.validation import Comparison
 from hilplant.plots.identification import convergence_picture, correlation_picture, run_picture
 
 
@@ -38,7 +38,7 @@ def _content(found: Identified, known: StartingPoint, origin: ResultOrigin, note
         "rows": parameter_rows(found, known),
         "forces": found.forces,
         "untold": untold(found),
-        "unexplained": unexplained(found.fitted),
+        "unexplained": found.unexplained,
         "notes": notes,
         "times": times,
         "rate": times.evaluations_per_s,
@@ -74,7 +74,7 @@ def parameter_rows(found: Identified, known: StartingPoint) -> list[dict[str, An
                 "value": verdict.value,
                 "standard_error": verdict.standard_error,
                 "interval": interval,
-                "told": verdict.identifiable,
+                "identifiable": verdict.identifiable,
             }
         )
     return rows

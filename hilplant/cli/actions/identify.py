@@ -10,7 +10,6 @@ from hilplant.identify.from_files import IdentifiedFiles, Request, figures, iden
 from hilplant.identify.stages import StagedValues
 from hilplant.identify.starting_point import StartingPoint
 from hilplant.identify.three_stages import Identified
-from hilplant.identify.validation import unexplained
 
 
 def run_identification(request: Request, report: Path | None) -> dict[str, Any]:
@@ -54,8 +53,10 @@ def _print(found: Identified, known: StartingPoint, written: list[Path]) -> None
     for hint in found.advice:
         typer.echo(f"would tell {', '.join(hint.tells)}: {hint.text}")
     times = found.times
+    answered = f" ({times.journal_note})" if times.journal_note else ""
     typer.echo(
-        f"search: {times.global_evaluations} evaluations in {times.global_s:.1f} s, {times.evaluations_per_s:.0f}/s; "
+        f"search: {times.global_evaluations} evaluations{answered} in {times.global_s:.1f} s, "
+        f"{times.evaluations_per_s:.0f}/s; "
         f"refinement {times.local_s:.1f} s, intervals {times.intervals_s:.1f} s"
     )
     typer.echo(f"written: {', '.join(map(str, written))}")
@@ -64,7 +65,7 @@ def _print(found: Identified, known: StartingPoint, written: list[Path]) -> None
 def _print_parameters(found: Identified) -> None:
     rows = zip(found.verdicts, found.intervals, found.task.choice.values, strict=True)
     typer.echo(f"{'parameter':24}{'before':>12}{'found':>12}   95 % interval")
-    withheld = bool(unexplained(found.fitted))
+    withheld = bool(found.unexplained)
     for verdict, interval, before in rows:
         text = "not identifiable"
         if verdict.identifiable and withheld:
@@ -83,5 +84,5 @@ def _print_errors(found: Identified) -> None:
     for role, compared in (("fitted", found.fitted), ("held out", found.held_out)):
         for each in (comparison.error for comparison in compared):
             typer.echo(f"{each.name} ({role}): current {each.rms_current_a:.4g} A rms, noise {each.noise_a:.4g} A")
-    for line in unexplained(found.fitted):
+    for line in found.unexplained:
         typer.echo(line, err=True)
