@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hilplant.bench.bus_description import ConditionEntry, FrameEntry, ReceivedEntry, SentEntry, SignalEntry
+from hilplant.bench.bus_description import FrameEntry, ReceivedEntry, SentEntry
+from hilplant.bench.mapping_description import ConditionEntry, SignalEntry
 from hilplant.bus.codec import Mapped
 from hilplant.bus.flag_conditions import ConditionTerm, FlagCondition, link_condition
 from hilplant.bus.frame_layout import FD_LENGTHS

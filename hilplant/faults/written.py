@@ -12,7 +12,8 @@ from hilplant.faults.catalogue import fault_named
 from hilplant.faults.fault import About
 from hilplant.faults.timing import Inserted
 from hilplant.signals import INPUTS, OUTPUTS
-from hilplant.verdicts.binding import Known, KnownSignal, condition_of
+from hilplant.verdicts.conditions import condition_of
+from hilplant.verdicts.known import Known, KnownSignal
 
 #: What `when` may name: the plant's signals, of the tick before.
 SIGNALS: Mapping[str, KnownSignal] = {

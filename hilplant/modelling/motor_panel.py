@@ -10,8 +10,9 @@ from hilplant.bench.plant_description import NoLoad, PlantSection
 from hilplant.failure import Failure
 from hilplant.models.records import Brush
 from hilplant.signals import INPUT_INDEX
+from hilplant.simulation.entries import Entry
 from hilplant.simulation.run import simulate
-from hilplant.simulation.scenario import Entry, Scenario
+from hilplant.simulation.scenario import Scenario
 
 #: Longest simulation [s].
 LONGEST_S = 60.0

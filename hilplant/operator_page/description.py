@@ -19,7 +19,7 @@ from hilplant.operator_page.scenario_play import known_scenarios
 from hilplant.resources import shipped
 from hilplant.runtime.commands import OWNERS
 from hilplant.signals import ECU_STATUS, INPUTS, OUTPUTS, STATUS
-from hilplant.simulation.stimuli import load_profile
+from hilplant.simulation.supply_profiles import load_profile
 from hilplant.units import SECOND_NS, TURN_RAD
 
 #: Crank angles at which the wiper's picture is told; between them it turns by less than a pixel.

@@ -9,7 +9,8 @@ import numpy as np
 from pydantic import ValidationError
 
 from hilplant.failure import Failure
-from hilplant.simulation.stimuli import Generated, Shape, load_profile
+from hilplant.simulation.stimuli import Generated, Shape
+from hilplant.simulation.supply_profiles import load_profile
 
 #: How often a new value is sent [s]; what is to be exact to the tick belongs into a scenario.
 EVERY_S = 0.01

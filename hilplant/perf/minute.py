@@ -7,7 +7,8 @@ from hilplant.models.load import LOADS
 from hilplant.models.polynomial import C1, C2
 from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX
-from hilplant.simulation.scenario import Entry, Scenario
+from hilplant.simulation.entries import Entry
+from hilplant.simulation.scenario import Scenario
 
 #: At most this many times C; the same in milliseconds for 60 simulated seconds; and what the thesis needed for them:
 #: its rigid-body model, and its polynomial one (section 6.3).

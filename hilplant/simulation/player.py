@@ -22,7 +22,8 @@ from hilplant.runtime.loop import FIRST_OUTPUT, FIRST_STATUS, WAITING
 from hilplant.signals import ECU_TX, INPUT_INDEX, INPUTS, OUTPUTS, STATUS_INDEX
 from hilplant.simulation.scenario import FIRST_COMMAND, Scenario
 from hilplant.units import SECOND_NS
-from hilplant.verdicts.binding import Known, condition_of
+from hilplant.verdicts.conditions import condition_of
+from hilplant.verdicts.known import Known
 from hilplant.verdicts.ticks import Row, margin
 
 _RELAYS = frozenset((INPUT_INDEX["relay_on"], INPUT_INDEX["relay_fast"]))

@@ -10,7 +10,7 @@ from hilplant.bus.database import database_among
 from hilplant.bus.protection import Protection
 from hilplant.declaration import Signal
 from hilplant.signals import INPUTS, OUTPUTS, STATUS
-from hilplant.verdicts.binding import Known, KnownMessage, KnownSignal
+from hilplant.verdicts.known import Known, KnownMessage, KnownSignal
 
 
 @dataclass(frozen=True)

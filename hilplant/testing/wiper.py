@@ -20,8 +20,10 @@ from hilplant.testing.virtual_bench import VirtualBench
 from hilplant.testing.words import line_of
 from hilplant.units import SECOND_NS
 from hilplant.verdicts.arrays import judge
-from hilplant.verdicts.binding import Known, Placed, bind, level_of
+from hilplant.verdicts.binding import Placed, bind
+from hilplant.verdicts.conditions import level_of
 from hilplant.verdicts.expectations import Expectation
+from hilplant.verdicts.known import Known
 from hilplant.verdicts.ticks import margin
 from hilplant.verdicts.written import DEFAULT_WAIT_S, Limits, kind_of
 

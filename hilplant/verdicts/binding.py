@@ -1,14 +1,13 @@
 """Written expectations -> rules in ticks over known signals; a name that nobody knows is a problem with its line."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
-
-from pydantic import ValidationError
 
 from hilplant.checked_yaml.problems import BenchError, Problem, suggestion
 from hilplant.verdicts import written as w
+from hilplant.verdicts.conditions import bounds, condition_of, known_name, level_of
 from hilplant.verdicts.expectations import (
     Comes,
     Condition,
@@ -25,38 +24,7 @@ from hilplant.verdicts.expectations import (
     Stays,
     Window,
 )
-
-
-@dataclass(frozen=True, slots=True)
-class KnownSignal:
-    """What is known of a signal: its unit, whether it has few values only, and the numbers of its labels."""
-
-    unit: str = ""
-    discrete: bool = False
-    labels: Mapping[str, float] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True)
-class KnownMessage:
-    """What is known of a message: its cycle [ms], 0 where the database states none, and whether it is protected."""
-
-    cycle_ms: float = 0.0
-    protected: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Known:
-    """All that expectations may name, and the length of a tick and of the run [s]."""
-
-    step_s: float
-    seconds: float
-    signals: Mapping[str, KnownSignal]
-    messages: Mapping[str, KnownMessage]
-    marks: Mapping[str, float] = field(default_factory=dict)
-
-    def ticks(self, seconds: float) -> int:
-        """Return how many ticks a time takes, the last one begun."""
-        return math.ceil(seconds / self.step_s - 1e-6)
+from hilplant.verdicts.known import Known
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +87,7 @@ def _comes(entry: w.WithinEntry, known: Known) -> Rule:
 
 
 def _edge(entry: w.RisesEntry | w.FallsEntry, known: Known) -> Rule:
-    edge = Edge(_name(entry.subject, known), isinstance(entry, w.RisesEntry), entry.through)
+    edge = Edge(known_name(entry.subject, known), isinstance(entry, w.RisesEntry), entry.through)
     return Comes((edge,), _floor(entry.within, known))
 
 
@@ -131,7 +99,7 @@ def _settles(entry: w.SettlesEntry, known: Known) -> Rule:
 
 def _stays(entry: w.StaysEntry, known: Known) -> Rule:
     hold = None if entry.hold is None else known.ticks(entry.hold)
-    return Stays(_name(entry.stays, known), entry.tolerance, hold)
+    return Stays(known_name(entry.stays, known), entry.tolerance, hold)
 
 
 def _response(entry: w.ResponseEntry, known: Known) -> Rule:
@@ -139,7 +107,7 @@ def _response(entry: w.ResponseEntry, known: Known) -> Rule:
 
 
 def _count(entry: w.CountEntry, known: Known) -> Rule:
-    return Count(condition_of(entry.count, known), *_bounds(entry.limits, 0.0, None))
+    return Count(condition_of(entry.count, known), *bounds(entry.limits, 0.0, None))
 
 
 def _frames(entry: w.FramesEntry, known: Known) -> Rule:
@@ -164,68 +132,6 @@ def _subject(entry: w.Written, known: Known) -> Condition:
     if isinstance(subject, str):
         return (level_of(subject, entry.limits, known),)
     return condition_of(subject, known)
-
-
-def condition_of(parts: Mapping[str, Any], known: Known) -> Condition:
-    """Return what must hold together; ValueError for names that nobody knows, and for limits that say nothing."""
-    return tuple(_part(name, part, known) for name, part in parts.items())
-
-
-def _part(name: str, part: Any, known: Known) -> Level | Edge:
-    if part in ("rises", "falls"):
-        return Edge(_name(name, known), part == "rises")
-    if not isinstance(part, dict):
-        return level_of(name, w.Limits(equals=part), known)
-    crossing = {"rises", "falls"} & set(part)
-    if crossing:
-        level = part[crossing.pop()]
-        if len(part) > 1 or isinstance(level, bool) or not isinstance(level, int | float):
-            raise ValueError(f"{name}: write {{rises: LEVEL}} or {{falls: LEVEL}} alone")
-        return Edge(_name(name, known), "rises" in part, float(level))
-    try:
-        limits = w.Limits.model_validate(part)
-    except ValidationError as error:
-        raise ValueError(f"{name}: {error.errors()[0]['msg']}") from None
-    if not limits.stated:
-        raise ValueError(f"{name}: say what of it: below, above, between or equals")
-    return level_of(name, limits, known)
-
-
-def level_of(name: str, limits: w.Limits, known: Known) -> Level:
-    """Return the level of a signal that obeys limits; ValueError for names that nobody knows."""
-    signal = known.signals[_name(name, known)]
-    tolerance = limits.tolerance if limits.tolerance is not None else 0.5 if signal.discrete else 0.0
-    lowest, highest = _bounds(limits, tolerance, (name, signal))
-    return Level(name, lowest, highest)
-
-
-def _bounds(limits: w.Limits, tolerance: float, named: tuple[str, KnownSignal] | None) -> tuple[float, float]:
-    if limits.equals is not None:
-        wanted = _number(limits.equals, named)
-        tolerance = tolerance if named else limits.tolerance or 0.0
-        return wanted - tolerance, wanted + tolerance
-    lowest = -math.inf if limits.above is None else _number(limits.above, named)
-    highest = math.inf if limits.below is None else _number(limits.below, named)
-    if limits.between is not None:
-        lowest, highest = max(lowest, limits.between[0]), min(highest, limits.between[1])
-    return lowest, highest
-
-
-def _number(value: Any, named: tuple[str, KnownSignal] | None) -> float:
-    if not isinstance(value, str):
-        return float(value)
-    labels = {} if named is None else {label.lower(): number for label, number in named[1].labels.items()}
-    if value.lower() not in labels:
-        told = suggestion(value.lower(), labels) if labels else "; it has numbers only"
-        raise ValueError(f"{named[0] if named else 'count'} has no value '{value}'{told}")
-    return labels[value.lower()]
-
-
-def _name(name: str, known: Known) -> str:
-    if name not in known.signals:
-        near = suggestion(name, known.signals)
-        raise ValueError(f"no signal '{name}'{near if near.endswith('?') else ''}; docs/testing.md lists what there is")
-    return name
 
 
 def _steps(instants: Any, known: Known) -> Iterator[int | Condition]:

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from hilplant import Bench, Result, load_bench, simulate
 from hilplant.models.records import Load
 from hilplant.models.row import pack
-from hilplant.simulation.scenario import Entry, load_scenario
+from hilplant.simulation.entries import Entry
+from hilplant.simulation.scenario import load_scenario
 from hilplant.units import TURN_RAD
 
 SUPPLY, HALF_WINDOW, REVERSE = 13.5, math.radians(7.0), math.radians(11.46)

@@ -5,8 +5,9 @@ import pytest
 
 from hilplant.bench import load_bench
 from hilplant.signals import INPUT_INDEX
+from hilplant.simulation.entries import Entry
 from hilplant.simulation.run import Result, simulate
-from hilplant.simulation.scenario import Entry, Scenario
+from hilplant.simulation.scenario import Scenario
 
 BENCH = load_bench("default")
 SLOW = BENCH.parameters.motor.slow

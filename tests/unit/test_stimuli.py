@@ -12,7 +12,7 @@ from hilplant.failure import Failure
 from hilplant.resources import shipped
 from hilplant.signals import INPUT_INDEX
 from hilplant.simulation.scenario import load_scenario
-from hilplant.simulation.stimuli import load_profile
+from hilplant.simulation.supply_profiles import load_profile
 
 #: By hand from the table of profiles: lowest and highest voltage, length [s], and the integral of the voltage [V s]
 #: over that length; a ripple of whole periods adds nothing, a slope its mean.
