@@ -8,7 +8,7 @@ from hilplant.verdicts.expectations import Comes, Count, Holds, Settles, Stays
 from hilplant.verdicts.judgement import Piece
 
 
-class Stretch(Protocol):
+class StretchJudge(Protocol):
     """One stretch of a window, being judged; `broken` is the tick that violated it although it goes on."""
 
     @property
@@ -22,7 +22,7 @@ class Stretch(Protocol):
         """Judge what there was."""
 
 
-def stretch_of(rule: object, first: int) -> Stretch:
+def stretch_of(rule: object, first: int) -> StretchJudge:
     """Return a stretch that begins at the tick `first`, judged by a rule.
 
     Raises

@@ -22,7 +22,7 @@ from hilplant.verdicts.expectations import (
     is_over,
 )
 from hilplant.verdicts.judgement import NO_WINDOW, Judgement, Piece, combine, unless_hidden
-from hilplant.verdicts.stretches import Stretch, stretch_of
+from hilplant.verdicts.stretches import StretchJudge, stretch_of
 
 Row = Mapping[str, float]
 
@@ -38,7 +38,7 @@ class LiveExpectation:
         self._tick = -1
         self._first: int | None = None
         self._lost_ticks: list[int] = []
-        self._open: list[tuple[int, Stretch]] = []
+        self._open: list[tuple[int, StretchJudge]] = []
         self._done: dict[int, Piece] = {}
         self._begun: list[int] = []
         self._searches = expectation.searches
@@ -137,7 +137,7 @@ class LiveExpectation:
         self._feed(1.0 if met and not self._met else 0.0)
         self._met = met
 
-    def _begin(self, stretch: Stretch) -> None:
+    def _begin(self, stretch: StretchJudge) -> None:
         self._begun.append(self._tick)
         self._open.append((self._tick, stretch))
 
