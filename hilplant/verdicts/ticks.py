@@ -16,6 +16,7 @@ from hilplant.verdicts.expectations import (
     Holds,
     Level,
     Response,
+    Settles,
     Stays,
     Steps,
     Window,
