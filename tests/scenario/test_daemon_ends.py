@@ -71,7 +71,9 @@ def test_a_reader_that_leaves_after_the_first_line_takes_nothing_with_it(start: 
 def test_more_signals_while_the_recorder_ends_do_not_cut_its_work_short(start: Start, tmp_path: Path) -> None:
     run = start("--record", "run.hilrec", "--json", "o.json")
     serves(run)
-    while run.poll() is None:
+    end_s = time.monotonic() + PATIENCE_S
+    while not (written := tmp_path / "o.json").exists() or not written.stat().st_size:
+        assert run.poll() is None and time.monotonic() < end_s
         os.killpg(run.pid, signal.SIGINT)
         time.sleep(0.01)
     _, errors = run.communicate(timeout=PATIENCE_S)

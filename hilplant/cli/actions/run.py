@@ -54,34 +54,35 @@ def run_daemon(  # noqa: PLR0913, PLR0917
         bench, seat = seated(bench, inside)
     summary: Summary | None = None
     stop, voice = StopRequest(), Voice()
-    try:
-        # signals end the run, not the recorder's work
-        with (
-            ended_by_signals(stop),
-            recording(bench, record) as ring,
-            announced(bench, ring, door) as run,
-            page_beside(bench, run, page) as served,
-        ):
-            if served is not None:
-                voice.say(f"page: {served.said}")
-            on_start, prepare = partial(_say_start, bench, voice), partial(_prepare, seat)
-            if played is None:
-                summary = serve(bench, seconds, ring, stop, on_start, prepare)
-            else:
-                judge = judging(name, played.path, ring, bench.loop.cpu) if played.expect else nullcontext(Verdict())
-                with judge as verdict:
-                    play = partial(_play, played, bench, stop, prepare)
-                    summary = serve(bench, seconds, ring, stop, on_start, play)
-                    ring.close_writer()
-                summary.scenario_ruling = verdict.ruling
-    except Failure as failure:
-        if summary is None:
-            raise
-        summary.recording_complete = False  # the run itself is told all the same
-        voice.say(str(failure), err=True)
-    _say_end(summary, record, voice)
-    if seat is not None and summary.controller_stopped:
-        voice.say(f"{seat.stopped}; relays opened", err=True)
+    with ended_by_signals(stop):  # they end the run, not the recorder's work, nor what is said of it
+        try:
+            with (
+                recording(bench, record) as ring,
+                announced(bench, ring, door) as run,
+                page_beside(bench, run, page) as served,
+            ):
+                if served is not None:
+                    voice.say(f"page: {served.said}")
+                on_start, prepare = partial(_say_start, bench, voice), partial(_prepare, seat)
+                if played is None:
+                    summary = serve(bench, seconds, ring, stop, on_start, prepare)
+                else:
+                    judge = (
+                        judging(name, played.path, ring, bench.loop.cpu) if played.expect else nullcontext(Verdict())
+                    )
+                    with judge as verdict:
+                        play = partial(_play, played, bench, stop, prepare)
+                        summary = serve(bench, seconds, ring, stop, on_start, play)
+                        ring.close_writer()
+                    summary.scenario_ruling = verdict.ruling
+        except Failure as failure:
+            if summary is None:
+                raise
+            summary.recording_complete = False  # the run itself is told all the same
+            voice.say(str(failure), err=True)
+        _say_end(summary, record, voice)
+        if seat is not None and summary.controller_stopped:
+            voice.say(f"{seat.stopped}; relays opened", err=True)
     return summary
 
 

@@ -61,6 +61,7 @@ def run(  # noqa: PLR0913, PLR0917
     from hilplant.ecu.loop_controller import Inside
     from hilplant.recording.beside_loop import RecordTo
     from hilplant.recording.rotation import Rotation
+    from hilplant.runtime.server import StopRequest, ended_by_signals
 
     if reference is not None and controller is None:
         raise Failure("--reference is what a controller is asked for: give --controller NAME with it")
@@ -73,5 +74,6 @@ def run(  # noqa: PLR0913, PLR0917
     page_wanted = page_options(page, logs, browser, stream)
     summary = run_daemon(bench, seconds, to, channel, inside, not no_channel, page_wanted, scenario)
     missing = " | ".join(f"{given.name}: {given.fix}" for given in summary.privileges if not given.granted)
-    write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))
+    with ended_by_signals(StopRequest()):  # one more Ctrl-C shall not cost the figures
+        write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))
     raise typer.Exit(0 if summary.is_sound else 1)
