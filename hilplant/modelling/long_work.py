@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import yaml
 
-from hilplant.identify.from_files import IdentifiedFiles, Request, figures, identify_files
+from hilplant.identify.from_files import IdentifiedFiles, Request, figures, identify_files, partial_figures
+from hilplant.identify.stages import StagedValues
 from hilplant.identify.three_stages import Identified
 from hilplant.identify.validation import Comparison, unexplained
 from hilplant.modelling.recordings import thinned
@@ -24,6 +25,8 @@ def identified(order: Order, on_progress: OnProgress) -> Answer:
     done = identify_files(Request(**wanted | {"out": Path(order["out"])}), on_progress)
     found = done.found
     done.journal.remove()
+    if isinstance(found, StagedValues):
+        return _identified_partly(done, found)
     return {
         "figures": figures(found),
         "parameters": _parameters(found),
@@ -32,6 +35,27 @@ def identified(order: Order, on_progress: OnProgress) -> Answer:
         + [_compared(each, "held out") for each in found.held_out],
         "unexplained": unexplained(found.fitted),
         "advice": [f"{', '.join(hint.tells)}: {hint.text}" for hint in found.advice],
+        "notes": done.notes,
+        "parts": _parts(done),
+    }  # fmt: skip
+
+
+def _identified_partly(done: IdentifiedFiles, found: StagedValues) -> Answer:
+    """Return the same of some stages without the third: nothing is said of how sure the values are."""
+    choice = done.task.choice
+    rows = zip(choice.parameters, choice.values, found.values, strict=True)
+    return {
+        "figures": partial_figures(done.task, found),
+        "parameters": [
+            {"name": each.name, "unit": each.unit, "before": float(before), "found": float(value),
+             "identifiable": True, "withheld": True, "low": None, "high": None, "together": []}
+            for each, before, value in rows
+        ],
+        "history": [each._asdict() for each in found.outcome.history] if found.outcome is not None else [],
+        "compared": [_compared(each, "fitted") for each in found.fitted]
+        + [_compared(each, "held out") for each in found.held_out],
+        "unexplained": [],
+        "advice": [],
         "notes": done.notes,
         "parts": _parts(done),
     }  # fmt: skip
@@ -64,8 +88,8 @@ def _compared(each: Comparison, role: str) -> Answer:
 
 def _parts(done: IdentifiedFiles) -> Answer:
     """Return what was written for motor, screen and blades, as data."""
-    motor, screen, bench = (yaml.safe_load(path.read_text(encoding="utf-8")) for path in done.written)
-    return {"motor": motor, "screen": screen, "blades": bench["plant"].get("blades", {})}
+    motor, *screen, bench = (yaml.safe_load(path.read_text(encoding="utf-8")) for path in done.written)
+    return {"motor": motor, "screen": screen[0] if screen else None, "blades": bench["plant"].get("blades", {})}
 
 
 def trained_torque(order: Order, on_progress: OnProgress) -> Answer:
@@ -81,10 +105,10 @@ def trained_torque(order: Order, on_progress: OnProgress) -> Answer:
 
 def trained_motor(order: Order, on_progress: OnProgress) -> Answer:
     """Train the motor network, section 6.4.3."""
-    from hilplant.reports.motor import report_motor
+    from hilplant.reports.motor import MotorOptions, report_motor
 
-    made = report_motor(order["bench"], int(order["seed"]), int(order["scenarios"]), Path(order["out"]), on_progress)
-    return _report(made, order)
+    options = MotorOptions(int(order["seed"]), int(order["scenarios"]), Path(order["out"]))
+    return _report(report_motor(order["bench"], options, on_progress), order)
 
 
 def tabulated(order: Order, _: OnProgress) -> Answer:

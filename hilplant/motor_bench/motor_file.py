@@ -13,7 +13,7 @@ from hilplant.failure import Failure
 from hilplant.measurements.files import sha256
 from hilplant.motor_bench.measured_motor import MODES, Values, parameters_of
 from hilplant.motor_bench.readings import AnyReadings, Readings, Windings
-from hilplant.motor_bench.windings import Armature, counted
+from hilplant.motor_bench.windings import Armature, counted, path_resistance
 
 _BRUSH = ("resistance_ohm", "inductance_henry", "constant_v_s")
 
@@ -33,6 +33,8 @@ class FoundMotor(NamedTuple):
             armature = Armature.of(self.windings)
             flat |= {f"{mode}_coils_counted": counted(armature, mode == "fast").mean for mode in MODES}
             flat["fast_over_slow"] = flat["fast_coils_counted"] / flat["slow_coils_counted"]
+            flat |= {f"{mode}_path_resistance": path_resistance(armature, mode == "fast") for mode in MODES}
+            flat["fast_over_slow_resistance"] = flat["fast_path_resistance"] / flat["slow_path_resistance"]
         for name, value in self.values.items():
             flat |= {name: value.n, f"{name}_standard_error": value.s}
         return flat

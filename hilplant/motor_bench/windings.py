@@ -86,6 +86,19 @@ def path_sign(centre_rad: NDArray[np.float64], armature: Armature, fast: bool) -
     return np.where((angle >= begin) & (angle < TURN_RAD / 2.0), 1.0, -1.0)
 
 
+def path_resistance(armature: Armature, fast: bool) -> float:
+    """Return the resistance between the brushes over that of one coil, Figure 3-9: two paths in parallel.
+
+    A path of n coils beside one of N - n has n (N - n)/N of a coil's resistance, most with n = N/2: so the slow brush's
+    is the greater one, (3.32). The same ratio holds for inductances as far as coils do not share their flux.
+    """
+    slot = TURN_RAD / armature.coils
+    rotor = (np.arange(POSITIONS) + 0.5) * slot / POSITIONS
+    centre = rotor[:, np.newaxis] + slot * np.arange(armature.coils)
+    first = (path_sign(centre, armature, fast) > 0.0).sum(axis=1)
+    return float(np.mean(first * (armature.coils - first) / armature.coils))
+
+
 def brush_constants_v_s(windings: Windings) -> tuple[float, float]:
     """Return the constants of (3.30) and (3.31), slow and fast [V s/rad], for the current of the brush."""
     size = windings.flux_density_t, windings.armature_length_m, windings.armature_diameter_m

@@ -1,11 +1,13 @@
 """Pictures of a motor network: Figures 6-15 to 6-18 of Dooner (2016), and its errors over load and supply."""
 
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
 
 from hilplant.arrays import Floats
 from hilplant.plots.picture import figure_with, save
+from hilplant.train.bare_network import BareRun
 from hilplant.train.motor_compare import Grid
 from hilplant.train.motor_fit import TrainedPath
 
@@ -48,3 +50,31 @@ def _edges(values: Floats) -> Floats:
     first, last = 2.0 * values[0] - middles[0], 2.0 * values[-1] - middles[-1]
     edges: Floats = np.concatenate([[first], middles, [last]])
     return edges
+
+
+def plot_bare_run(found: BareRun, path: str | PathLike[str]) -> None:
+    """Draw the network alone, the guarded one and the physical motor, with the guard below: Figure 6-23."""
+    figure, (current, speed, guard) = figure_with((11, 8), 3, sharex=True, height_ratios=(3, 3, 1))
+    looks = {"physical": ("#1f2937", "-", 2.0), "guarded": ("#0b5cad", "--", 1.2), "bare": ("#b3261e", "-", 1.0)}
+    for axes, curves, label in (
+        (current, found.current_a, "current [A]"),
+        (speed, found.speed_rad_s, "crank speed [rad/s]"),
+    ):
+        for name, (color, line, width) in looks.items():
+            axes.plot(found.time_s, curves[name], color=color, linestyle=line, linewidth=width, label=name)
+        usual = np.concatenate([curves["physical"], curves["guarded"]])
+        reach = 1.5 * float(np.ptp(usual))
+        axes.set_ylim(float(usual.min()) - reach, float(usual.max()) + reach)
+        axes.set_ylabel(label)
+        axes.grid(alpha=0.25)
+    current.legend(loc="upper left", frameon=False, ncols=3)
+    guard.fill_between(found.time_s, found.active, step="post", color="#0b5cad", alpha=0.5)
+    guard.set(
+        ylabel="network\nasked",
+        yticks=[0, 1],
+        xlabel="time [s]; off from 5.2 to 5.8 s, 25 V from 6.5 to 7.5 s, else 16 V",
+    )
+    figure.suptitle(
+        "A motor network under a constant torque, off and at 25 V: alone (bare), guarded, and the physical motor"
+    )
+    save(figure, path, 110)

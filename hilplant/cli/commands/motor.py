@@ -40,5 +40,12 @@ def motor(
         slow, fast = counts["slow_coils_counted"], counts["fast_coils_counted"]
         typer.echo(f"  both paths together: {slow:.4g} K_t slow, {fast:.4g} K_t fast; between the brushes half of it")
         typer.echo(f"  fast over slow {fast / slow:.3f}; measured motors have 0.66 to 0.75")
+        slow, fast = counts["slow_path_resistance"], counts["fast_path_resistance"]
+        typer.echo(
+            f"  resistance by the paths of Figure 3-9: {slow:.4g} coils slow, {fast:.4g} coils fast, brushes apart"
+        )
+        typer.echo(
+            f"  fast over slow {fast / slow:.3f}; measured motors have 0.60 to 0.89, with brushes and wear in them"
+        )
     typer.echo(f"{out} written; put it under `motor` of a bench")
     write_json(json_file, found.figures)
