@@ -58,7 +58,7 @@ class Rotation:
                 found["part_bytes"] = round(float(amount[1]) * _BYTES[unit])
             else:
                 found["part_ns"] = round(float(amount[1]) * _SECONDS[unit] * SECOND_NS)
-        made = cls(**found, keep=keep or 0)
+        made = cls(found["part_bytes"], found["part_ns"], keep or 0)
         if text is not None and 0 < made.part_bytes < _SMALLEST_BYTES:
             raise Failure(f"rotate: a part has at least {_SMALLEST_BYTES // 1_000_000} MB")
         if text is not None and (made.part_ns < SECOND_NS and not made.part_bytes):
