@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 
 from hilplant.demo.figures import Figures, SpeedFigures, Stop, figures
+from hilplant.extras import missing, remedy
 from hilplant.plots.recording import plot_recording
 from hilplant.recording.export import signal_columns
 from hilplant.recording.reader import read_recording
@@ -19,11 +20,15 @@ _NEXT = (
 
 
 def summarise(run: Summary, recording: Path, plot: Path) -> list[str]:
-    """Draw the recording and return lines that say what it shows."""
+    """Draw the recording, where that is possible, and return lines that say what it shows."""
     columns, _ = signal_columns(read_recording(recording))
-    plot_recording(recording, plot)
+    drawn = str(plot)
+    if missing("plot"):
+        drawn = f"none without matplotlib: {remedy('plot')}"
+    else:
+        plot_recording(recording, plot)
     lines = [*wiping_lines(figures(columns)), *loop_lines(run)]
-    lines += [f"recording     {recording}", f"plot          {plot}", "", "next:"]
+    lines += [f"recording     {recording}", f"plot          {drawn}", "", "next:"]
     return lines + [
         line for command, what in _NEXT for line in (f"  # {what}", f"  {command.format(recording=recording)}")
     ]

@@ -20,7 +20,8 @@ from hilplant.recording.rotation import Rotation, parts_of
 from hilplant.runtime.ring import Ring
 
 _LOG = logging.getLogger(__name__)
-_START_TIMEOUT_S = 30.0
+#: A disk or a machine that is slow takes its time for the recorder's libraries; no loop waits yet.
+_START_TIMEOUT_S = 90.0
 #: Files that `export` makes of a recording; a recording under such a name would pass for one.
 _EXPORTED = (".mf4", ".blf", ".asc", ".csv", ".parquet", ".mcap")
 
@@ -162,7 +163,8 @@ def _start(
     if answer != "ready":
         child.kill()
         child.communicate()
-        raise Failure(answer or f"{path}: the recorder did not start, {_ended(child.returncode)}")
+        cause = f"not within {_START_TIMEOUT_S:g} s" if answer is None else _ended(child.returncode)
+        raise Failure(answer or f"{path}: the recorder did not start, {cause}")
     return Recorder(child, ring, path)
 
 
@@ -195,10 +197,11 @@ def _ended(code: int) -> str:
     return f"the recorder was killed by signal {-code}" if code < 0 else f"the recorder ended with code {code}"
 
 
-def _answer(child: subprocess.Popen[bytes]) -> str:
+def _answer(child: subprocess.Popen[bytes]) -> str | None:
+    """Return what the recorder says of its start, None where it takes too long."""
     answers = _pipe(child.stdout)
     ready, _, _ = select.select([answers], [], [], _START_TIMEOUT_S)
-    return answers.readline().decode().strip() if ready else ""
+    return answers.readline().decode().strip() if ready else None
 
 
 def _pipe(pipe: IO[bytes] | None) -> IO[bytes]:

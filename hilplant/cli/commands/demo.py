@@ -8,7 +8,7 @@ import typer
 
 from hilplant.cli.groups import command_app
 from hilplant.cli.page_option import LOGS, Browser, PageAddress, PageLogs, Stream, WithPage, page_options
-from hilplant.extras import need
+from hilplant.extras import missing, need
 from hilplant.operator_page.beside_run import STALK_AS_LINES
 
 app = command_app()
@@ -25,8 +25,9 @@ def demo(  # noqa: PLR0913, PLR0917
 ) -> None:
     """Show plant and stand-in ECU at work on an in-memory bus.
 
-    Needs no CAN in the kernel and no privileges; leaves a recording and a plot. With --page it is driven by hand on the
-    operator's page, without end unless --seconds is given, and records only what is logged there.
+    Needs no CAN in the kernel and no privileges; leaves a recording, and with matplotlib a plot. With --page it is
+    driven by hand on the operator's page, without end unless --seconds is given, and records only what is logged
+    there.
     """
     options = page_options(page, logs, browser, stream)
     if options is not None:
@@ -35,7 +36,8 @@ def demo(  # noqa: PLR0913, PLR0917
 
         run_demo_page(seconds, replace(options, stalk=STALK_AS_LINES))
         return
-    need("demo")
+    if missing("recording"):
+        need("demo")
     from hilplant.cli.actions.demo import run_demo
 
     run_demo(seconds, out)

@@ -126,6 +126,14 @@ def test_a_folder_that_is_not_there_is_said_before_the_run(run: Any, tmp_path: P
         start_recorder(run.ring, tmp_path / "nowhere" / "run.hilrec", run.bench)
 
 
+def test_a_recorder_that_takes_too_long_to_start_is_said_so(
+    run: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("hilplant.recording.recorder._START_TIMEOUT_S", 0.0)
+    with pytest.raises(Failure, match=r"run\.hilrec: the recorder did not start, not within 0 s"):
+        start_recorder(run.ring, tmp_path / "run.hilrec", run.bench)
+
+
 def test_a_full_disk_is_said_and_the_run_goes_on(
     run: Any, tmp_path: Path, capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
 ) -> None:
