@@ -17,6 +17,8 @@ import numba
 import numba.extending
 from platformdirs import user_cache_path
 
+from hilplant.inlined import Inlined
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -31,7 +33,7 @@ def _sources_hash(*rooms: str) -> str:
     for room in rooms:
         for source in sorted((package / room).glob("*.py")):
             digest.update(source.read_bytes())
-    for name in ("declaration.py", "jit.py", "signals.py", "units.py"):
+    for name in ("declaration.py", "inlined.py", "jit.py", "signals.py", "units.py"):
         digest.update((package / name).read_bytes())
     return digest.hexdigest()[:16]
 
@@ -81,7 +83,7 @@ vars(numba.config)["CACHE_DIR"] = str(_cache_folder())
 
 #: All that a step calls becomes one piece of code: calls between pieces cost a quarter of the step. Without numba's
 #: run time nobody counts references to the caller's arrays, atomically, at every call: another quarter.
-_OPTIONS: Any = {"error_model": "numpy", "forceinline": True, "_nrt": False}
+_OPTIONS: Any = {"error_model": "numpy", "forceinline": True, "_nrt": False, "no_cfunc_wrapper": True}
 
 
 def compiled(function: Function) -> Function:
@@ -90,7 +92,11 @@ def compiled(function: Function) -> Function:
     It may read and write arrays of its caller. It cannot make one, which is an error when it is compiled, and must not
     return one to Python.
     """
-    return cast(Function, numba.njit(cache=True, **_OPTIONS)(function))
+    if vars(numba.config)["DISABLE_JIT"]:
+        return function
+    dispatcher = Inlined(function, targetoptions={"nopython": True, **_OPTIONS})
+    dispatcher.enable_caching()
+    return cast(Function, dispatcher)
 
 
 #: The lines of a function's body, and what the names in it mean.

@@ -35,6 +35,26 @@ def test_a_model_function_that_makes_an_array_is_refused() -> None:
         squares(3)
 
 
+def test_machine_code_is_made_of_what_python_calls_and_of_nothing_else() -> None:
+    @compiled
+    def innermost(x: float) -> float:
+        return x / 3.0
+
+    @compiled
+    def inner(x: float, count: int) -> tuple[float, float]:
+        return innermost(x) + count, innermost(innermost(x))
+
+    @compiled
+    def outer(x: float) -> float:
+        first, second = inner(x, 2)
+        return first - second
+
+    assert outer(0.7) == 0.7 / 3.0 + 2 - 0.7 / 3.0 / 3.0
+    assert [len(each.overloads) for each in (outer, inner, innermost)] == [1, 0, 0]  # type: ignore[attr-defined]
+    assert inner(0.7, 2) == (0.7 / 3.0 + 2, 0.7 / 3.0 / 3.0)
+    assert [len(each.overloads) for each in (outer, inner, innermost)] == [1, 1, 0]  # type: ignore[attr-defined]
+
+
 def test_a_cache_that_others_could_have_written_to_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     own = tmp_path / "own" / "compiled"
     assert _usable(own)
