@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hilplant.bench.motor_network_file import Floats, MotorNetworkFile
+from hilplant.arrays import Floats
+from hilplant.bench.motor_network_file import MotorNetworkFile
 from hilplant.bench.parameter_hash import motor_hash
 from hilplant.bench.parts import MotorFile
 from hilplant.bench.plant_description import NarxMotor, OdeMotor

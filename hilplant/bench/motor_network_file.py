@@ -3,9 +3,9 @@
 from typing import Annotated, Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from hilplant.arrays import Floats
 from hilplant.bench.load_files import TrainedFile
 from hilplant.checked_yaml.checked import Checked, Name, NotNegative, Positive, Real, wrong
 
@@ -14,7 +14,6 @@ FORMAT = "hilplant motor network 1"
 #: What a path takes of a tick, in its order; the last two are what it answers.
 QUANTITIES = ("terminal_v", "torque_n_m", "current_a", "crank_speed_rad_s")
 
-Floats = NDArray[np.float64]
 Numbers = list[Real]
 Pair = Annotated[list[Real], Field(min_length=2, max_length=2)]
 

@@ -5,9 +5,9 @@ import json
 from typing import Annotated, Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from hilplant.arrays import Floats
 from hilplant.bench.load_files import TrainedFile
 from hilplant.bench.motor_network_file import Numbers, Pair
 from hilplant.checked_yaml.checked import Checked, Name, Positive, Real, wrong
@@ -17,8 +17,6 @@ from hilplant.models.records import Motor
 FORMAT = "hilplant speed network 1"
 #: What a path takes in, and last what it answers.
 SPEED_QUANTITIES = ("terminal_v", "current_a", "crank_speed_rad_s")
-
-Floats = NDArray[np.float64]
 
 
 class SpeedRange(Checked):

@@ -11,9 +11,8 @@ the gain gives, so K is near 0.72 when the error is small.
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from hilplant.arrays import Floats
 
 #: Triangles of the error [rad/s]: foot, peak, foot. The positive sets mirror the negative ones.
 ERROR_SETS = {

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.atomic_write import make_folder
 from hilplant.bench import Bench, load_bench
 from hilplant.plots.control import plot_estimates
@@ -14,7 +15,7 @@ from hilplant.reports.page import TrainingReport, markdown_table, write_page
 from hilplant.train.drawn_data import training_data
 from hilplant.train.estimator import BRUSHES, TrainedEstimator, train_speed_network
 from hilplant.train.speed_estimates import ESTIMATORS, estimated, full_range
-from hilplant.train.speed_network import Floats, record
+from hilplant.train.speed_network import record
 from hilplant.train.writing import write_file
 
 #: The thesis shows its errors in figures alone; with the nominal motor ours are called good below this [rad/s].

@@ -15,13 +15,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.models.batch import simulate_columns
 from hilplant.models.load import WHOLE_WIPER
 from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX
 from hilplant.models.tables import channels as channel_count
 from hilplant.signals import INPUTS, OUTPUT_INDEX, OUTPUTS
-
-Floats = NDArray[np.float64]
 
 #: Shares for each thread, so that one with quick sets does not wait long for the others.
 _SHARES = 4

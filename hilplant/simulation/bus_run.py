@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.bus.frame import Frame
 from hilplant.bus.in_memory import InMemoryBus
@@ -20,7 +20,6 @@ from hilplant.runtime.tape import Tape
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import MILLISECOND_NS, SECOND_NS, TURN_RAD
 
-Floats = NDArray[np.float64]
 _FIRST_OUTPUT = 2 + len(INPUTS)
 
 #: All stages, ended from each of them, by time [s] within a round; and supply and screen of the rounds in turn.

@@ -3,16 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench
 from hilplant.models.load import resist
 from hilplant.models.lookup import find
 from hilplant.models.resistance import Crank
 from hilplant.models.row import unpack
 from hilplant.signals import SCREENS, Inputs
-
-Floats = NDArray[np.float64]
 
 WETNESS = dict(SCREENS)
 

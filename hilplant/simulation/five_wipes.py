@@ -5,12 +5,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench
 from hilplant.models.tables import LEFT_ROCKER
 from hilplant.simulation.crank_torque import WETNESS, Conditions, crank_torque
 from hilplant.units import TURN_RAD
-
-Floats = NDArray[np.float64]
 
 #: The crank turns once a second.
 CRANK_SPEED_RAD_S = TURN_RAD

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench, initial_state
 from hilplant.control.catalogue import without_network
 from hilplant.control.closed_loop import TRACE, run_rows
@@ -20,8 +20,6 @@ from hilplant.jit import uninterrupted
 from hilplant.models.plant import simulate_rows
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import TURN_RAD
-
-Floats = NDArray[np.float64]
 
 SECONDS = 3600
 #: How long the need stays as it is [s].

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.atomic_write import make_folder
 from hilplant.bench import load_bench
 from hilplant.bench.assembly import Bench
@@ -22,7 +23,7 @@ from hilplant.thesis.control_rain import Duty, controlled_duty, rain, two_speed_
 from hilplant.thesis.control_test import STATES, DriveRun, Metrics, SpeedProfile, metrics, run_drive, thesis_drive
 from hilplant.thesis.control_thesis import ROWS, Order, controller_of, orders
 from hilplant.train.speed_estimates import CHANGES, OFF, Case, estimated, estimator_table, full_range
-from hilplant.train.speed_network import Floats, record, trained_paths
+from hilplant.train.speed_network import record, trained_paths
 from hilplant.units import SECOND_NS
 
 #: Our own controllers, by their name in the catalogue.

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench, initial_state
 from hilplant.control.catalogue import without_network
 from hilplant.control.closed_loop import TRACE, run_rows
@@ -15,8 +15,6 @@ from hilplant.control.records import POWER_ON, Controller
 from hilplant.jit import uninterrupted
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import SECOND_NS, TURN_RAD
-
-Floats = NDArray[np.float64]
 
 #: Table 7-3: begin and end of each state [s], reference over pi [rad/s], wetness.
 STATES = (

@@ -11,17 +11,15 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
+from hilplant.arrays import Floats
 from hilplant.models import tables as channel
 from hilplant.models.load import LOADS, NONE, POLYNOMIAL, WHOLE_WIPER
 from hilplant.models.records import Blade, Brush, Friction, Parameters
 from hilplant.signals import Inputs
 from hilplant.units import TURN_RAD
-
-Floats = NDArray[np.float64]
 
 #: Crank angle [rad] -> array [channels, 2] of values and derivatives, in the order of the tables.
 Channels = Callable[[float], Floats]

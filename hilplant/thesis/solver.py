@@ -4,15 +4,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.models.plant import simulate_rows
 from hilplant.models.records import Parameters, State
 from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS
 from hilplant.thesis.reference import Channels, Reference
-
-Floats = NDArray[np.float64]
 
 #: Wetness of the screen.
 DRY, TACKY, WET = 0.0, 0.5, 1.0

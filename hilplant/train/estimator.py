@@ -5,13 +5,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hilplant import __version__
+from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench
 from hilplant.bench.speed_network_file import FORMAT, SPEED_QUANTITIES, motor_record_hash
 from hilplant.failure import Failure
 from hilplant.models.load import REDUCED
 from hilplant.progress import OnProgress, ProgressReport, unseen
 from hilplant.train.speed_estimates import Case, Error, estimator_table, network_speeds
-from hilplant.train.speed_network import NEURONS, Floats, NetworkRecord, train, training_record
+from hilplant.train.speed_network import NEURONS, NetworkRecord, train, training_record
 from hilplant.train.torque import one_thread
 from hilplant.train.writing import data_hash
 

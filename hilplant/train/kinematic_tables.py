@@ -9,15 +9,13 @@ from dataclasses import astuple, dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.mechanics.motion import motion, point_motion
 from hilplant.mechanics.wiper import Wiper
 from hilplant.models.torque_samples import look_ups
 from hilplant.units import TURN_RAD
-
-Floats = NDArray[np.float64]
 
 FEWEST, MOST = 32, 65536
 

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from hilplant import __version__
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.bench.motor_network_file import FORMAT, QUANTITIES, PathSection
 from hilplant.bench.parameter_hash import motor_hash
 from hilplant.progress import OnProgress
-from hilplant.train.motor_data import LENGTH_S, DrivenSequence, Floats, recorded
+from hilplant.train.motor_data import LENGTH_S, DrivenSequence, recorded
 from hilplant.train.motor_figures import path_figures
 from hilplant.train.motor_fit import TrainedPath, train_path
 from hilplant.train.motor_search import OneTickErrors, search

@@ -4,12 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.models.narx import NETWORK
 from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX
 from hilplant.simulation.batch import simulate_batch
-from hilplant.train.motor_data import Floats, excitation
+from hilplant.train.motor_data import excitation
 
 COLUMNS = ("current_a", "crank_speed_rad_s", "crank_angle_rad", "motor_mode")
 #: Length of a run of the grid [s], and of a random one.

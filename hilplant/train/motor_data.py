@@ -7,8 +7,8 @@ motor does must happen in the first 70 % of the time, up to 18 V.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Flags, Floats
 from hilplant.bench import Bench
 from hilplant.models.load import NETWORK, REDUCED
 from hilplant.models.plant import simulate_rows
@@ -16,9 +16,6 @@ from hilplant.models.records import Brush, Parameters
 from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import TURN_RAD
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 #: Length of each brush's data [s]; 70 % of it are the 11.2 s that section 6.4.3 names.
 LENGTH_S = 16.0

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hilplant.arrays import Flags, Floats
 from hilplant.progress import OnProgress, ProgressReport
 from hilplant.train.levenberg_marquardt import DescentSettings, minimise
-from hilplant.train.motor_data import DrivenSequence, Flags, Floats
+from hilplant.train.motor_data import DrivenSequence
 from hilplant.train.motor_loop import WIDTH, room_for, run, weight_count
 
 #: Neurons of each path, by the listing of Appendix F.

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.jit import compiled_for_threads
 from hilplant.models.narx import NETWORK
@@ -19,7 +20,6 @@ from hilplant.models.plant import step
 from hilplant.models.records import Parameters, State
 from hilplant.models.row import pack, unpack
 from hilplant.signals import INPUT_INDEX, Inputs
-from hilplant.train.motor_data import Floats
 from hilplant.units import TURN_RAD
 
 #: Length of a scenario in ticks.

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import polynomial
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from hilplant import __version__
+from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench
 from hilplant.bench.load_files import POLYNOMIAL_FORMAT
 from hilplant.bench.parameter_hash import linkage_hash
@@ -23,8 +23,6 @@ from hilplant.mechanics.wiper import Wiper
 from hilplant.models.tables import DAMPING, INERTIA
 from hilplant.train.writing import data_hash
 from hilplant.units import TURN_RAD
-
-Floats = NDArray[np.float64]
 
 #: Five speeds of the crank [rad/s], and points of a turn: N of (6.4).
 SPEEDS_RAD_S = (2.0, 3.0, 4.0, 5.0, 6.0)

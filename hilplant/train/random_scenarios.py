@@ -1,12 +1,10 @@
 """Random runs of a wiper: relays, supply, screen, and everything that a torque network was not trained for."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.signals import INPUT_INDEX, INPUTS
 from hilplant.units import TURN_RAD
-
-Floats = NDArray[np.float64]
 
 #: How long one state of the inputs lasts [s], at least and at most.
 SHORTEST_S, LONGEST_S = 0.1, 2.5

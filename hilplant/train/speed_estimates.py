@@ -9,13 +9,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench
 from hilplant.control.catalogue import ADAPTING, BLIND_NOISE
 from hilplant.control.closed_loop import observe_rows
 from hilplant.control.design import armature, model
 from hilplant.jit import uninterrupted
 from hilplant.models.records import Brush, Motor, Parameters
-from hilplant.train.speed_network import Floats, NetworkRecord, record
+from hilplant.train.speed_network import NetworkRecord, record
 
 OFF = 0.2
 ESTIMATORS = ("network", "observer", "observer, resistance adapting")

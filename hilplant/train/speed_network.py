@@ -8,16 +8,14 @@ ten, and eight in the other path.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench, initial_state
 from hilplant.models.plant import simulate_rows
 from hilplant.models.records import Parameters
 from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
-
-Floats = NDArray[np.float64]
 
 NEURONS = {"slow": 10, "fast": 8}
 #: Voltages of the stairs [V], and how long each is held [s].

@@ -8,13 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench
 from hilplant.progress import OnProgress, ProgressReport, unseen
 from hilplant.train.levenberg_marquardt import DescentSettings, Minimum, minimise
 from hilplant.train.tanh_network import NetworkFit, Samples, TanhNetwork
 from hilplant.train.torque_data import Speeds, Wipes, wipes
-
-Floats = NDArray[np.float64]
 
 #: Parts of the samples that are fitted and judged by; the rest is the test.
 TRAINED, JUDGED = 0.70, 0.15

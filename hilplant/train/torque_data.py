@@ -4,15 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench
 from hilplant.bench.plant_description import WholeWiper
 from hilplant.failure import Failure
 from hilplant.models import torque_samples as samples
 from hilplant.units import TURN_RAD
-
-Floats = NDArray[np.float64]
 
 #: Screens whose torques are the outputs: dry and wet.
 WETNESSES = (0.0, 1.0)

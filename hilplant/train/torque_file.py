@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hilplant import __version__
+from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench
 from hilplant.bench.load_files import TORQUE_FORMAT, TorqueFile
 from hilplant.bench.parameter_hash import load_hash
@@ -18,8 +18,6 @@ from hilplant.models import torque_samples as samples
 from hilplant.train.torque import Data, TrainedTorque
 from hilplant.train.torque_data import grid, physical_torques
 from hilplant.train.writing import data_hash
-
-Floats = NDArray[np.float64]
 
 #: Angles and speeds of the dense grid, and how much more than the largest error on it is promised.
 DENSE_ANGLES, DENSE_SPEEDS = 2048, 241

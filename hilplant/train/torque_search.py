@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench
 from hilplant.models import torque_samples as samples
 from hilplant.models.load import LOADS
@@ -14,8 +14,6 @@ from hilplant.signals import ACTIVE_MODELS, INPUT_INDEX
 from hilplant.simulation.batch import simulate_batch
 from hilplant.train.random_scenarios import random_inputs, random_state
 from hilplant.train.torque_file import network_torques
-
-Floats = NDArray[np.float64]
 
 COLUMNS = ("crank_angle_rad", "crank_speed_rad_s", "load_mode", "current_a", "park_contact")
 NETWORK = ACTIVE_MODELS.index("network")

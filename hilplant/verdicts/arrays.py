@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import minimum_filter1d
 
+from hilplant.arrays import Flags, Floats
 from hilplant.verdicts.expectations import (
     Comes,
     Condition,
@@ -29,9 +29,6 @@ from hilplant.verdicts.expectations import (
 )
 from hilplant.verdicts.frames import FrameTimes, judge_frames
 from hilplant.verdicts.judgement import NO_WINDOW, Judgement, Piece, combine, unless_hidden
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 #: How many ticks before and behind a violation its values are kept.
 AROUND = 3

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.arrays import Flags
 from hilplant.verdicts.expectations import Frames
 from hilplant.verdicts.judgement import LOST, NO_WINDOW, Judgement
 
-Flags = NDArray[np.bool_]
 Ticks = NDArray[np.int64]
 
 NO_FRAME = "no frame came"

@@ -9,13 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.inverse_dynamics import AppliedForce, CrankMotion, Loads, inverse_dynamics
 from hilplant.mechanics.motion import motion
 from hilplant.mechanics.wiper import Wiper, WiperParts, assemble
 
-Floats = NDArray[np.float64]
 #: Weights of the sixth-order central differences for the first and the second derivative.
 FIRST = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0
 SECOND = np.array([2.0, -27.0, 270.0, -490.0, 270.0, -27.0, 2.0]) / 180.0

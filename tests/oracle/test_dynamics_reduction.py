@@ -9,14 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.inverse_dynamics import AppliedForce, CrankMotion, inverse_dynamics
 from hilplant.mechanics.motion import Motion, motion, point_motion
 from hilplant.mechanics.reduction import Reduction, reduce
 from hilplant.mechanics.wiper import Wiper, WiperParts, WiperSide, assemble
 
-Floats = NDArray[np.float64]
 BOUND = 1e-9
 TURN = 2.0 * np.pi
 NODES = 256

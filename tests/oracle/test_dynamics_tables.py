@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from support.interpolation import interpolation_errors, knots_within, read_rows
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.coefficients import Aerodynamics, Coefficient, CoefficientError
 from hilplant.mechanics.inverse_dynamics import AppliedForce, CrankMotion, inverse_dynamics
 from hilplant.mechanics.motion import motion, point_motion
@@ -26,7 +26,6 @@ from hilplant.models.tables import (
     channels,
 )
 
-Floats = NDArray[np.float64]
 Shipped = Callable[[str], WiperParts]
 PUBLISHED = "rhd_slave_driven"
 TURN = 2.0 * np.pi

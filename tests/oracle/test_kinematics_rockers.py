@@ -11,6 +11,7 @@ import pytest
 import yaml
 from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.design_points import GeometryError
 from hilplant.mechanics.linkage import Linkage
 from hilplant.mechanics.newton_raphson import follow, positions, rates
@@ -21,7 +22,6 @@ from hilplant.models.lookup import find, value
 from hilplant.resources import shipped
 from hilplant.units import RAD_PER_DEG, TURN_RAD
 
-Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
 KNOTS = 1024
 #: Published or found before: sweep of the rocker [deg], largest |d rocker / d crank|.

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.models.plant import tick
 from hilplant.models.records import Arm, Brush, Load, Motor, Parameters, ParkSwitch, State
 from hilplant.models.row import pack
@@ -35,8 +35,6 @@ CASES = [
     ("figure_8_3", 0.0, 1.0),
     ("figure_8_3", 2e-4, 1.0),
 ]
-
-Floats = NDArray[np.float64]
 
 
 def plant_of(name: str, dry: float, model: float) -> Parameters:

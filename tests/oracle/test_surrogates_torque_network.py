@@ -4,14 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench.load_files import TorqueFile
 from hilplant.models.torque_network import network_tangent
 from hilplant.models.torque_samples import network_tangents, network_torques
 from hilplant.perf.c_step import compile_network
 
-Floats = NDArray[np.float64]
 STATES = np.column_stack([np.linspace(0.0, 6.28, 500), np.random.default_rng(1).uniform(1.0, 7.0, 500)])
 
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench, load_bench
 from hilplant.bench.assembly import initial_state
 from hilplant.bench.load_files import TorqueFile
@@ -17,7 +17,6 @@ from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX
 from hilplant.models.row import pack
 from hilplant.signals import ACTIVE_MODELS, INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 
-Floats = NDArray[np.float64]
 PHYSICAL, NETWORK, STANDSTILL, OUTSIDE = (ACTIVE_MODELS.index(name) for name in ACTIVE_MODELS)
 #: A disturbance lasts from 3 s to 4.5 s of 9 s.
 TICKS, BEGIN, END = 9000, 3000, 4500

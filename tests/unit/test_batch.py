@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from support.closed_form import ClosedFormWiper
 
+from hilplant.arrays import Floats
 from hilplant.models.plant import simulate_rows
 from hilplant.models.records import (
     PARAMETER_INDEX,
@@ -29,8 +29,6 @@ MOTOR = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2)
 SETS, TICKS = 11, 400
 COLUMNS = ("crank_angle_rad", "current_a", "load_torque_n_m")
 TABLES = ClosedFormWiper().tables(256)
-
-Floats = NDArray[np.float64]
 
 
 def plant(force_n: float, inertia_kg_m2: float) -> Floats:

@@ -11,15 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.centre_driven import centre_driven
 from hilplant.mechanics.linkage import Linkage
 from hilplant.mechanics.master_driven import master_driven
 from hilplant.mechanics.slave_driven import slave_driven
 from hilplant.resources import shipped
 
-Floats = NDArray[np.float64]
 Points = Mapping[str, Any]
 MAKERS = {"slave_driven": slave_driven, "master_driven": master_driven, "centre_driven": centre_driven}
 CONFIGURATIONS = [f"{hand}_{kind}" for hand in ("rhd", "lhd") for kind in MAKERS]

@@ -10,13 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.motion import motion
 from hilplant.mechanics.wiper import SideParts, Wiper, WiperParts, WiperSide, assemble
 from hilplant.units import TURN_RAD
-
-Floats = NDArray[np.float64]
 
 
 def angle_of(start: tuple[float, float], end: tuple[float, float]) -> float:

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from numpy.typing import NDArray
 
 from hilplant.mechanics.linkage import Linkage
 from hilplant.mechanics.newton_raphson import accelerations, follow, positions, rates
@@ -15,7 +14,6 @@ from hilplant.mechanics.transmission import check_transmission
 from hilplant.resources import shipped
 from hilplant.units import RAD_PER_DEG, TURN_RAD
 
-Floats = NDArray[np.float64]
 CRANK = np.linspace(0.0, TURN_RAD, 1025)
 
 

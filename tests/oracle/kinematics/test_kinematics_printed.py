@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.linkage import Linkage
 from hilplant.mechanics.newton_raphson import follow
 from hilplant.units import TURN_RAD
 
-Floats = NDArray[np.float64]
 Pair = tuple[Any, Any]
 
 

@@ -14,13 +14,13 @@ import pytest
 import yaml
 from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.assembly import Description, assembly
 from hilplant.mechanics.design_points import GeometryError
 from hilplant.mechanics.transmission import check_transmission, followed_turn
 from hilplant.resources import shipped
 from hilplant.units import RAD_PER_DEG, TURN_RAD
 
-Floats = NDArray[np.float64]
 Stack = dict[str, NDArray[np.complex128]]
 STEPS = 480
 COUNTS = {"slave_driven": 4000, "master_driven": 3000, "centre_driven": 3000}
