@@ -121,7 +121,7 @@ def run_all_tests(arguments: list[str]) -> int:
 
 
 def step(name: str, arguments: list[str]) -> bool:
-    """Run one part of the checks in the environment, and say how it went: what ends the whole may come before its end."""
+    """Run one part of the checks in the environment, and say at once how it went."""
     print(f"\n=== {name}", flush=True)
     begin = time.monotonic()
     good = subprocess.call([str(PYTHON), *arguments], cwd=HERE, stdin=subprocess.DEVNULL) == 0
