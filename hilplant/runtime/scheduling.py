@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 _MCL_CURRENT_AND_FUTURE = 3
+_SLEEP_DEVICE = "/dev/cpu_dma_latency"
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,10 +48,10 @@ def _shallow_sleep(granted: list[Privilege]) -> Iterator[None]:
     with contextlib.ExitStack() as stack:
 
         def hold() -> None:
-            file = stack.enter_context(open("/dev/cpu_dma_latency", "wb", buffering=0))
+            file = stack.enter_context(open(_SLEEP_DEVICE, "r+b", buffering=0))  # never made where there is none
             file.write(struct.pack("i", 0))
 
-        fix = "give the user write access to /dev/cpu_dma_latency"
+        fix = f"give the user write access to {_SLEEP_DEVICE}"
         granted.append(_attempt("cpu_dma_latency held at 0", fix, hold))
         yield
 
