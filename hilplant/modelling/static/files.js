@@ -8,8 +8,8 @@ import { store } from "./store.js";
 export function head(node) {
   const name = element("span", { class: "dim", id: "where" });
   const said = element("span", { class: "message", role: "alert", id: "said" });
-  const undo = element("button", { onclick: () => store.change("undo") }, "Undo");
-  const redo = element("button", { onclick: () => store.change("redo") }, "Redo");
+  const undo = element("button", { id: "undo", onclick: () => store.change("undo") }, "Undo");
+  const redo = element("button", { id: "redo", onclick: () => store.change("redo") }, "Redo");
   const refresh = () => {
     const { state } = store;
     name.textContent = `${store.get(["name"]) || "?"}: ${state.folder ? `${state.folder}${state.saved ? "" : ", changed"}` : "not saved yet"}`;
@@ -19,8 +19,8 @@ export function head(node) {
   store.addEventListener("changed", refresh);
   store.addEventListener("said", ({ detail }) => { said.textContent = detail.text; said.classList.toggle("wrong", detail.wrong); });
   refresh();
-  node.append(element("h1", {}, "Windscreen Wiper System Modelling Tool"), name, element("button", { onclick: openDialog }, "Open"), element("button", { onclick: saveDialog }, "Save"),
-    element("button", { onclick: () => fetched("zip", "wiper.zip") }, "Zip"), undo, redo, element("button", { onclick: toggleTheme }, "Dark / light"), said);
+  node.append(element("h1", {}, "Windscreen Wiper System Modelling Tool"), name, element("button", { id: "open", onclick: openDialog }, "Open"), element("button", { id: "save", onclick: saveDialog }, "Save"),
+    element("button", { id: "zip", onclick: () => fetched("zip", "wiper.zip") }, "Zip"), undo, redo, element("button", { onclick: toggleTheme }, "Dark / light"), said);
   addEventListener("beforeunload", (event) => { if (!store.state.saved && store.state.undo > 0) event.preventDefault(); });
 }
 
