@@ -59,13 +59,14 @@ class Jobs:
                 [sys.executable, "-m", "hilplant.modelling.job_process"],
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=complaints, text=True, start_new_session=True,
             )  # fmt: skip
-            self._child, self._state = child, JobState(work, "running")
+            state = JobState(work, "running")
+            self._child, self._state = child, state
         if child.stdin is None or child.stdout is None:
             raise AssertionError("a job is always started with pipes")
         with contextlib.suppress(BrokenPipeError):
             child.stdin.write(json.dumps(order | {"work": work}) + "\n")
             child.stdin.close()
-        self._reader = threading.Thread(target=self._read, args=(child, complaints), daemon=True)
+        self._reader = threading.Thread(target=self._read, args=(child, complaints, state), daemon=True)
         self._reader.start()
 
     def stop(self) -> None:
@@ -81,24 +82,25 @@ class Jobs:
         if self._reader is not None:
             self._reader.join(_END_S)
 
-    def _read(self, child: "subprocess.Popen[str]", complaints: Any) -> None:
+    def _read(self, child: "subprocess.Popen[str]", complaints: Any, state: JobState) -> None:
+        """Follow one job to its end; the next one may have begun when this one's process is gone."""
         for line in child.stdout or ():
             with contextlib.suppress(ValueError):
-                self._take(json.loads(line))
+                self._take(state, json.loads(line))
         code = child.wait()
         complaints.seek(0)
         last = complaints.read().strip().splitlines()[-1:]
         complaints.close()
         with self._lock:
-            if self._state.state == "running":
-                self._state.state = "stopped" if code < 0 else "failed"
-                self._state.text = last[0] if last and code >= 0 else f"ended with {code}"
+            if state.state == "running":
+                state.state = "stopped" if code < 0 else "failed"
+                state.text = last[0] if last and code >= 0 else f"ended with {code}"
 
-    def _take(self, said: dict[str, Any]) -> None:
+    def _take(self, state: JobState, said: dict[str, Any]) -> None:
         with self._lock:
             if said["kind"] == "progress":
-                self._state.progress = said["content"]
+                state.progress = said["content"]
             elif said["kind"] == "done":
-                self._state.state, self._state.answer = "done", said["content"]
+                state.state, state.answer = "done", said["content"]
             else:
-                self._state.state, self._state.text = said["kind"], said["content"]
+                state.state, state.text = said["kind"], said["content"]

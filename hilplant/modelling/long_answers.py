@@ -1,5 +1,7 @@
 """What the page asks for that takes long, or stays: recordings, identification, training, a run."""
 
+import contextlib
+import re
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
@@ -15,14 +17,29 @@ Asked = Mapping[str, Any]
 
 _OF_IDENTIFICATION = (
     "columns", "frames", "hold", "also", "search", "generations", "population", "ordered", "seed", "resume", "date",
+    "stages",
 )  # fmt: skip
 #: Trainings with their settings, those of the commands.
 _TRAININGS: dict[str, dict[str, Any]] = {
-    "torque": {"neurons": 10, "harmonics": 2, "starts": 10, "speeds_rad_s": [1, 3, 5, 7], "seed": 1, "scenarios": 200},
-    "motor": {"seed": 1, "scenarios": 2000},
+    "torque": {
+        "neurons": 10,
+        "harmonics": 2,
+        "starts": 10,
+        "speeds_rad_s": [1, 3, 5, 7],
+        "seed": 1,
+        "scenarios": 200,
+        "data": None,
+        "validation": None,
+    },
+    "motor": {"seed": 1, "scenarios": 2000, "data": []},
     "tables": {"bound": 1e-8},
     "polynomial": {},
 }
+
+
+#: How long a run may take until its page is there, the compiler included; how often it is looked at [s].
+_START_S, _LOOK_S = 300.0, 0.5
+_ADDRESS = re.compile(r"http://\S+#token=\S+")
 
 
 class LongAnswers:
@@ -106,6 +123,10 @@ class LongAnswers:
             raise Failure(f"there is no training of {work}; there are {', '.join(_TRAININGS)}")
         out = make_folder(self._session.work / "trained" / work)
         order = _TRAININGS[work] | {key: asked[key] for key in _TRAININGS[work] if key in asked}
+        if work == "torque":
+            order |= {key: str(self._recording(order[key])) for key in ("data", "validation") if order[key]}
+        if work == "motor":
+            order["data"] = [self._named({**each, "screen": ""}) for each in order["data"]]
         bench = str(self._session.laid_out("to_train"))
         self._session.jobs.start(work, order | {"bench": bench, "out": str(out)})
         return self._session.jobs.state
@@ -121,13 +142,27 @@ class LongAnswers:
         return self._session.jobs.state
 
     def _run(self, asked: Asked) -> dict[str, str]:
-        """Start the bench that was saved, with the operator's page; the run goes on when this page is closed."""
+        """Start the bench that was saved, with the operator's page; the run goes on when this page is closed.
+
+        Answers with the address of the operator's page, or with what the run said when it did not start.
+        """
         model = self._session.model
         if not model.is_saved or model.folder is None:
             raise Failure("save the bench first: a run reads it from its folder")
         self._refuse_problems()
-        path = model.folder / model.bench
-        command = [sys.executable, "-m", "hilplant", "run", str(path), *map(str, asked.get("options", []))]
-        log = (self._session.work / "run.log").open("wb")
-        subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True)
-        return {"command": f"hilplant run {path}", "log": str(self._session.work / "run.log")}
+        path, log = model.folder / model.bench, self._session.work / "run.log"
+        command = [sys.executable, "-m", "hilplant", "run", str(path), "--page=127.0.0.1:0"]
+        command += ["--logs", str(model.folder / "logs")]
+        command += ["--channel", str(asked["channel"])] if asked.get("channel") else []
+        with log.open("wb") as said:
+            child = subprocess.Popen(
+                command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, start_new_session=True
+            )
+        for _ in range(round(_START_S / _LOOK_S)):
+            text = log.read_text(encoding="utf-8", errors="replace")
+            if found := _ADDRESS.search(text):
+                return {"command": f"hilplant run {path} --page", "page": found[0], "said": text}
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                child.wait(_LOOK_S)
+                raise Failure(log.read_text(encoding="utf-8", errors="replace").strip() or "the run ended at once")
+        return {"command": f"hilplant run {path} --page", "page": "", "said": text}

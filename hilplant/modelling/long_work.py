@@ -8,7 +8,7 @@ import numpy as np
 import yaml
 
 from hilplant.identify.from_files import IdentifiedFiles, Request, figures, identify_files, partial_figures
-from hilplant.identify.stages import StagedValues
+from hilplant.identify.stages import StagedValues, parse_stages
 from hilplant.identify.three_stages import Identified
 from hilplant.identify.validation import Comparison, unexplained
 from hilplant.modelling.recordings import thinned
@@ -20,45 +20,44 @@ Answer = dict[str, Any]
 
 
 def identified(order: Order, on_progress: OnProgress) -> Answer:
-    """Identify from recordings; the order's keys are those of :class:`Request`."""
+    """Identify from recordings; the order's keys are those of :class:`Request`, `stages` as the command takes them."""
     wanted: Any = {name: tuple(value) if isinstance(value, list) else value for name, value in order.items()}
-    done = identify_files(Request(**wanted | {"out": Path(order["out"])}), on_progress)
-    found = done.found
+    wanted |= {"out": Path(order["out"]), "stages": parse_stages(order.get("stages", "1,2,3"))}
+    done = identify_files(Request(**wanted), on_progress)
     done.journal.remove()
-    if isinstance(found, StagedValues):
-        return _identified_partly(done, found)
+    found, outcome = done.found, done.found.outcome
+    answer = _whole(found) if isinstance(found, Identified) else _partial(done, found)
+    return answer | {
+        "history": [each._asdict() for each in outcome.history] if outcome is not None else [],
+        "compared": [_compared(each, "fitted") for each in found.fitted]
+        + [_compared(each, "held out") for each in found.held_out],
+        "notes": done.notes,
+        "parts": _parts(done),
+    }
+
+
+def _whole(found: Identified) -> Answer:
     return {
         "figures": figures(found),
         "parameters": _parameters(found),
-        "history": [each._asdict() for each in found.outcome.history],
-        "compared": [_compared(each, "fitted") for each in found.fitted]
-        + [_compared(each, "held out") for each in found.held_out],
         "unexplained": unexplained(found.fitted),
         "advice": [f"{', '.join(hint.tells)}: {hint.text}" for hint in found.advice],
-        "notes": done.notes,
-        "parts": _parts(done),
-    }  # fmt: skip
+    }
 
 
-def _identified_partly(done: IdentifiedFiles, found: StagedValues) -> Answer:
-    """Return the same of some stages without the third: nothing is said of how sure the values are."""
-    choice = done.task.choice
-    rows = zip(choice.parameters, choice.values, found.values, strict=True)
+def _partial(done: IdentifiedFiles, found: StagedValues) -> Answer:
+    """Return what stages without the third found: values without intervals."""
+    rows = zip(done.task.choice.parameters, done.task.choice.values, found.values, strict=True)
+    nothing: Answer = {"identifiable": None, "withheld": False, "low": None, "high": None, "together": []}
     return {
         "figures": partial_figures(done.task, found),
         "parameters": [
-            {"name": each.name, "unit": each.unit, "before": float(before), "found": float(value),
-             "identifiable": True, "withheld": True, "low": None, "high": None, "together": []}
-            for each, before, value in rows
+            {"name": parameter.name, "unit": parameter.unit, "before": float(before), "found": float(value)} | nothing
+            for parameter, before, value in rows
         ],
-        "history": [each._asdict() for each in found.outcome.history] if found.outcome is not None else [],
-        "compared": [_compared(each, "fitted") for each in found.fitted]
-        + [_compared(each, "held out") for each in found.held_out],
         "unexplained": [],
-        "advice": [],
-        "notes": done.notes,
-        "parts": _parts(done),
-    }  # fmt: skip
+        "advice": ["intervals, and what is not identifiable, come with the third stage"],
+    }
 
 
 def _parameters(found: Identified) -> list[Answer]:
@@ -88,8 +87,9 @@ def _compared(each: Comparison, role: str) -> Answer:
 
 def _parts(done: IdentifiedFiles) -> Answer:
     """Return what was written for motor, screen and blades, as data."""
-    motor, *screen, bench = (yaml.safe_load(path.read_text(encoding="utf-8")) for path in done.written)
-    return {"motor": motor, "screen": screen[0] if screen else None, "blades": bench["plant"].get("blades", {})}
+    written = [yaml.safe_load(path.read_text(encoding="utf-8")) for path in done.written]
+    screen = written[1] if len(written) > 2 else {}
+    return {"motor": written[0], "screen": screen, "blades": written[-1]["plant"].get("blades", {})}
 
 
 def trained_torque(order: Order, on_progress: OnProgress) -> Answer:
@@ -99,6 +99,7 @@ def trained_torque(order: Order, on_progress: OnProgress) -> Answer:
     options = TorqueOptions(
         int(order["neurons"]), int(order["harmonics"]), int(order["starts"]), tuple(order["speeds_rad_s"]),
         int(order["seed"]), int(order["scenarios"]), Path(order["out"]),
+        _path(order["data"]), _path(order["validation"]),
     )  # fmt: skip
     return _report(train_torque(order["bench"], options, on_progress), order)
 
@@ -107,7 +108,7 @@ def trained_motor(order: Order, on_progress: OnProgress) -> Answer:
     """Train the motor network, section 6.4.3."""
     from hilplant.reports.motor import MotorOptions, report_motor
 
-    options = MotorOptions(int(order["seed"]), int(order["scenarios"]), Path(order["out"]))
+    options = MotorOptions(int(order["seed"]), int(order["scenarios"]), Path(order["out"]), tuple(order["data"]))
     return _report(report_motor(order["bench"], options, on_progress), order)
 
 
@@ -123,6 +124,10 @@ def fitted_polynomial(order: Order, _: OnProgress) -> Answer:
     from hilplant.reports.polynomial import train_polynomial
 
     return _report(train_polynomial(order["bench"], Path(order["out"])), order)
+
+
+def _path(name: str | None) -> Path | None:
+    return Path(name) if name else None
 
 
 def _report(made: TrainingReport, order: Order) -> Answer:

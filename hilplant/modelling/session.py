@@ -86,9 +86,11 @@ class ModellingSession:
         """Let trained files, whole paths of them, stand in for load and motor: hybrid and network benches."""
 
         def taken(model: ModelFiles) -> ModelFiles:
-            for key, kind, path in (("load", "network", load), ("motor_model", "narx", motor)):
+            for key, kind, name, path in (
+                ("load", "network", "torque_network.yaml", load),
+                ("motor_model", "narx", "motor_network.yaml", motor),
+            ):
                 if path is not None:
-                    name = Path(path).name
                     model = replace(model, others={**model.others, name: Path(path).read_bytes()})
                     more = {"points": 1} if key == "load" else {}
                     model = model.with_value(("plant", key), {"model": kind, "file": name} | more)

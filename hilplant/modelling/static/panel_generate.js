@@ -1,6 +1,6 @@
 // 7 Generate simulation model: files, tables, networks, hybrid and network benches, and a run of them.
 import { api } from "/shared/access.js";
-import { element } from "/shared/dom.js";
+import { choice, element } from "/shared/dom.js";
 import { fetched } from "./download.js";
 import { saveDialog } from "./files.js";
 import { listen } from "./field.js";
@@ -19,14 +19,36 @@ export function generatePanel() {
   const job = new JobView(Object.keys(TRAININGS), (state) => { if (state.state === "done") show(made, state); });
   const trainings = Object.entries(TRAININGS).map(([what, [text, title, settings]]) => {
     const inputs = settings.map(([key, value]) => [key, element("input", { value, size: 5, inputmode: "decimal", "aria-label": `${what} ${key}` })]);
-    const start = () => { made.replaceChildren(); job.seen = null; job.ask("train", { what, ...Object.fromEntries(inputs.map(([key, input]) => [key, Number(input.value)])) }); };
-    return element("div", { class: "row" }, element("button", { title, dataset: { what }, onclick: start }, text), ...inputs.map(([key, input]) => element("label", {}, key, input)));
+    const data = ownData(what);
+    const start = () => { made.replaceChildren(); job.seen = null; job.ask("train", { what, ...data.chosen(), ...Object.fromEntries(inputs.map(([key, input]) => [key, Number(input.value)])) }); };
+    return element("div", { class: "row" }, element("button", { title, dataset: { what }, onclick: start }, text), ...inputs.map(([key, input]) => element("label", {}, key, input)), data.node);
   });
   return element("div", { class: "columns" },
-    element("section", { class: "panel" }, element("h2", {}, "Bench and its files"), physical()),
+    element("section", { class: "panel wide" }, element("h2", {}, "Bench and its files"), physical()),
     element("section", { class: "panel" }, element("h2", {}, "Kinematic model and networks"), ...trainings, job.node, made),
     element("section", { class: "panel" }, element("h2", {}, "Benches with networks"), networks()),
     element("section", { class: "panel" }, element("h2", {}, "Run"), run()));
+}
+
+// Own data in place of the bench's plant: recordings that were given to the page (panel Parameter Identification).
+function ownData(what) {
+  if (what === "torque") {
+    const [data, validation] = ["data", "validation"].map((text) => choice([["", `own ${text} ...`]], { "aria-label": `${what} ${text}` }));
+    for (const select of [data, validation]) select.addEventListener("pointerdown", () => offer(select));
+    return { node: element("span", {}, data, validation), chosen: () => ({ data: data.value || null, validation: validation.value || null }) };
+  }
+  if (what === "motor") {
+    const [slow, fast] = ["slow", "fast"].map((mode) => choice([["", `own data, ${mode} ...`]], { "aria-label": `${what} ${mode}` }));
+    for (const select of [slow, fast]) select.addEventListener("pointerdown", () => offer(select));
+    const named = [[slow, "slow"], [fast, "fast"]];
+    return { node: element("span", {}, slow, fast), chosen: () => ({ data: named.filter(([select]) => select.value).map(([select, mode]) => ({ name: select.value, mode })) }) };
+  }
+  return { node: null, chosen: () => ({}) };
+}
+
+async function offer(select) {
+  const known = new Set([...select.options].map((each) => each.value));
+  for (const { name } of await api("recordings", {})) if (!known.has(name)) select.append(element("option", { value: name }, name));
 }
 
 function physical() {
@@ -57,15 +79,17 @@ async function physicalAgain() {
 
 function run() {
   const said = element("p", { class: "message", id: "run-said" });
+  const channel = element("input", { placeholder: "channel, such as vcan0", "aria-label": "channel" });
   const start = async () => {
     try {
-      const found = await api("run", {});
-      said.textContent = `started: ${found.command}; what it says is in ${found.log}`;
+      said.textContent = "starting; the first time the step is compiled";
+      const found = await api("run", { channel: channel.value });
+      said.replaceChildren(`started: ${found.command} `, ...(found.page ? [element("a", { href: found.page, target: "_blank", rel: "noopener" }, "the operator's page")] : [found.said]));
     } catch (error) {
       said.textContent = error.message;
     }
   };
-  return element("div", {}, element("button", { id: "run", onclick: start }, "Run it here"), said);
+  return element("div", {}, element("div", { class: "row" }, element("button", { id: "run", onclick: start }, "Run it here"), channel), said);
 }
 
 function show(place, { work, answer }) {

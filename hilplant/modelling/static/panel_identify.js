@@ -54,6 +54,7 @@ function show(place, answer) {
 }
 
 function interval(each) {
+  if (each.identifiable === null) return "with stage 3";
   if (!each.identifiable) return `not identifiable${each.together.length ? `, not apart from ${each.together.join(", ")}` : ""}`;
   if (each.withheld) return "withheld: the model does not fit";
   return [each.low, each.high].map((side) => (side === null ? "open" : side.toPrecision(5))).join(" to ");
