@@ -27,13 +27,23 @@ def identified(order: Order, on_progress: OnProgress) -> Answer:
     done.journal.remove()
     found, outcome = done.found, done.found.outcome
     answer = _whole(found) if isinstance(found, Identified) else _partial(done, found)
-    return answer | {
+    whole = answer | {
         "history": [each._asdict() for each in outcome.history] if outcome is not None else [],
         "compared": [_compared(each, "fitted") for each in found.fitted]
         + [_compared(each, "held out") for each in found.held_out],
         "notes": done.notes,
         "parts": _parts(done),
     }
+    return dict(_named_alone(whole, f"{Path(str(wanted['data'][0])).parent}/"))
+
+
+def _named_alone(value: Any, folder: str) -> Any:
+    """Return an answer in which recordings are called by their names, not by where this page keeps them."""
+    if isinstance(value, dict):
+        return {key: _named_alone(inner, folder) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_named_alone(inner, folder) for inner in value]
+    return value.replace(folder, "") if isinstance(value, str) else value
 
 
 def _whole(found: Identified) -> Answer:

@@ -137,12 +137,17 @@ def _about(found: ModelCheck) -> dict[str, Any]:
 
 
 def with_parts(model: ModelFiles, parts: dict[str, Any]) -> ModelFiles:
-    """Return a model with the values of an identification: of motor, screen and blades, changed one by one."""
-    for part in ("motor", "screen"):
-        for key, value in parts.get(part, {}).items():
-            if key not in ("name", "source", "comment"):
-                model = model.with_value(("plant", part, key), value)
-    for side, values in parts.get("blades", {}).items():
-        for key in ("force_n", "wear"):
-            model = model.with_value(("plant", "blades", side, key), values[key])
+    """Return a model with the values of an identification: of motor, screen and blades; what they leave out stays."""
+    plant = checked(model).values["plant"]
+    for part in ("motor", "screen", "blades"):
+        found = {key: value for key, value in parts.get(part, {}).items() if key not in ("name", "source", "comment")}
+        if found:
+            model = model.with_value(("plant", part), _over(plant[part], found))
     return model
+
+
+def _over(before: Any, found: Any) -> Any:
+    """Return a group with what was found in it, group by group."""
+    if not (isinstance(before, dict) and isinstance(found, dict)):
+        return found
+    return {**before, **{key: _over(before.get(key), value) for key, value in found.items()}}

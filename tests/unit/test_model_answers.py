@@ -148,3 +148,23 @@ def test_networks_stand_in_with_their_files_beside_the_bench(session: ModellingS
     assert shown["others"] == ["motor_network.yaml", "torque_network.yaml"]  # motor.yaml is the motor itself
     assert shown["values"]["plant"]["load"]["model"] == "network"
     assert shown["values"]["plant"]["motor_model"]["model"] == "narx"
+
+
+def test_what_was_found_is_taken_value_by_value_and_what_was_not_stays(session: ModellingSession) -> None:
+    before = dict(session.model.texts)
+    blade = {"force_n": 7.1, "wear": 1.0}
+    motor = {"name": "x", "status": "identified", "slow": {"resistance_ohm": 1.2372}, "identified": {"cost": 0.5}}
+    parts = {"motor": motor, "screen": {"dry": {"mu_dry_1": 0.78}}, "blades": {"left": blade, "right": blade}}
+    session.accept(0, parts)
+    shown, texts = session.shown(), session.model.texts
+    assert shown["sound"], shown["problems"]
+    plant = shown["values"]["plant"]
+    assert plant["motor"]["slow"]["resistance_ohm"] == 1.2372
+    assert plant["motor"]["slow"]["constant_v_s"] == 4.579e-2
+    assert plant["motor"]["name"] == "table_5_9"
+    assert plant["screen"]["dry"]["mu_dry_1"] == 0.78
+    assert plant["blades"]["left"] == {"force_n": 7.1, "wear": 1.0, "area_m2": 0.07, "drag": 0.175, "lift": 0.0517,
+                                       "assumed": ["wear", "area_m2", "drag", "lift"]}  # fmt: skip
+    for name, text in before.items():
+        comments = [line for line in text.splitlines() if line.strip().startswith("#")]
+        assert [line for line in texts[name].splitlines() if line.strip().startswith("#")] == comments

@@ -9,7 +9,7 @@ export function parkDrawing(circuit) {
   const command = choice(["off", "slow", "fast"].map((each) => [each, each]), { "aria-label": "stage" });
   const closed = element("input", { type: "checkbox", "aria-label": "cam at park" });
   const phase = choice([["wiping", "wiping"], ["turning_back", "turning back"], ["parked", "parked"]], { "aria-label": "park contacts A and B" });
-  const drawing = svg("svg", { class: "drawing", viewBox: "0 0 520 260", role: "img", "aria-label": `${circuit} park switch` });
+  const drawing = svg("svg", { class: "drawing", viewBox: "0 0 560 260", role: "img", "aria-label": `${circuit} park switch` });
   const words = element("p", { class: "dim" });
   let states = [];
   const draw = () => {
