@@ -2,12 +2,13 @@
 
 import re
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.core import TyperCommand
 
-from hilplant.operator_page.beside_run import PageOptions
+if TYPE_CHECKING:
+    from hilplant.operator_page.beside_run import PageOptions
 
 _OPTION = "--page"
 _ADDRESS = re.compile(r"\d+|\S*:\d+")
@@ -36,6 +37,10 @@ class WithPage(TyperCommand):
         return super().parse_args(ctx, given)
 
 
-def page_options(address: str | None, logs: Path, browser: bool, stream: str = "") -> PageOptions | None:
+def page_options(address: str | None, logs: Path, browser: bool, stream: str = "") -> "PageOptions | None":
     """Return what is asked for; None without `--page`."""
-    return None if address is None else PageOptions(address, logs, browser, stream)
+    if address is None:
+        return None
+    from hilplant.operator_page.beside_run import PageOptions
+
+    return PageOptions(address, logs, browser, stream)

@@ -9,7 +9,6 @@ import typer
 from hilplant.cli.groups import command_app
 from hilplant.cli.page_option import LOGS, Browser, PageAddress, PageLogs, Stream, WithPage, page_options
 from hilplant.extras import missing, need
-from hilplant.operator_page.beside_run import STALK_AS_LINES
 
 app = command_app()
 
@@ -33,6 +32,7 @@ def demo(  # noqa: PLR0913, PLR0917
     if options is not None:
         need("web")
         from hilplant.cli.actions.demo import run_demo_page
+        from hilplant.operator_page.beside_run import STALK_AS_LINES
 
         run_demo_page(seconds, replace(options, stalk=STALK_AS_LINES))
         return
