@@ -3,6 +3,8 @@
 from collections import deque
 from typing import Any
 
+import numpy as np
+
 from hilplant.arrays import Floats
 from hilplant.channel.run_files import columns
 from hilplant.models.records import PARAMETER_INDEX
@@ -12,6 +14,7 @@ from hilplant.signals import INPUTS, MODES, STATUS
 from hilplant.units import SECOND_NS
 
 MOST = 500
+_LATE_TICKS = 10_000
 _PARAMETERS = list(PARAMETER_INDEX)
 #: Counts whose change is no event.
 _QUIET = ("tick", "worst_latency_us")
@@ -40,6 +43,11 @@ class Happenings:
         new += [self.add(now_s, kind, words) for kind, words in self._changes(row)]
         self._before = row
         return [each for each in new if each]
+
+    def late_p99_us(self) -> int:
+        """Return how late [us] 99 of 100 of the last ticks began, over ten seconds at a step of 1 ms."""
+        late = self._follower.late_us(_LATE_TICKS)
+        return int(np.percentile(late, 99)) if len(late) else 0
 
     def add(self, time_s: float, kind: str, words: str) -> dict[str, Any]:
         """Keep an event."""

@@ -19,6 +19,7 @@ from hilplant.operator_page.requests import Answer, Requests
 from hilplant.operator_page.scenario_play import ScenarioPlay
 from hilplant.operator_page.stalk import StalkOfLines, StalkOnBus
 from hilplant.operator_page.waveform import Waveform
+from hilplant.signals import ECU_STATUS
 from hilplant.web.access import Access
 from hilplant.web.visitor import Visitor
 
@@ -62,6 +63,7 @@ class Screen:
         self.logger = Logger(run.ring, self.log_changed)
         self.recording = ""
         self.scenario = ScenarioPlay(run.ring, parts.bench, self._scenario_changed)
+        self._ecu: dict[str, float | None] = {}
         self._tasks: set[asyncio.Task[None]] = set()
 
     # One browser
@@ -163,13 +165,26 @@ class Screen:
                 await self.leave(self.lead.holder)
             self.parts.frames.look()
             looks += 1
+            if looks % 3 == 0:
+                self._note_ecu()
             if looks % 3 == 0 and any(seat.rate_hz for seat in self._seats.values()):
                 rows = self.parts.frames.rows(self.now_s)
                 self._tell_all({"told": "faults", "faults": self.happenings.faults})
-                told = {"told": "frames", "rows": rows, "ecu": self.parts.frames.ecu(), "log": self.logger.told}
-                told["scenario"] = self.scenario.told
+                told: dict[str, Any] = {"told": "frames", "rows": rows, "ecu": self.parts.frames.ecu()}
+                told |= {"log": self.logger.told, "scenario": self.scenario.told}
+                told["late_p99_us"] = self.happenings.late_p99_us()
                 self._tell_all(told, awake=True)
             await asyncio.sleep(_LOOK_S)
+
+    def _note_ecu(self) -> None:
+        """Keep as an event what the ECU tells of itself, when that changes."""
+        told = self.parts.frames.ecu()
+        for signal in ECU_STATUS[:2]:
+            value = told.get(signal.name)
+            before, self._ecu[signal.name] = self._ecu.get(signal.name), value
+            if None not in (before, value) and before != value:
+                words = " -> ".join(signal.choices[int(each)] for each in (before, value) if each is not None)
+                self.happenings.add(self.now_s, "ecu", f"{signal.name.replace('_', ' ')} {words}")
 
     def state(self) -> dict[str, Any]:
         """Return what all browsers show alike."""

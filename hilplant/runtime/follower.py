@@ -51,6 +51,10 @@ class Follower:
         """Copy the newest row; zeros before the first."""
         return self._ring.latest()
 
+    def late_us(self, ticks: int) -> NDArray[np.int32]:
+        """Copy how late [us] the last ticks began, up to so many, the newest last."""
+        return self._ring.late_us(ticks)
+
     @property
     def ended(self) -> bool:
         """Whether the loop has written its last row."""

@@ -159,6 +159,8 @@ class Loop:
             if last_ns is not None and deadline_ns >= last_ns:
                 break
             self.latency.add(late_ns)
+            if self._ring is not None:
+                self._ring.note_late(late_ns // MICROSECOND_NS)
             self.tick(deadline_ns - start_ns)
             if feed_ns and deadline_ns >= next_feed_ns and not self._behind:
                 watchdog.feed()

@@ -39,8 +39,9 @@ FRAME_DTYPE = np.dtype(
 _FRAME = struct.Struct("<qqIBBH64s")
 _FRAME_BYTES = _FRAME.size
 
-_MAGIC = 0x326E6972_6C6968  # "hilrin2"
+_MAGIC = 0x336E6972_6C6968  # "hilrin3"
 _HEADER_BYTES = 512
+_LATEST_US = 2**31 - 1
 _EVENTS, _COMMANDS = 8192, 512
 # Places in the header, in 8-byte words. What never changes, what the writer writes and what the reader writes
 # lie on cache lines of their own.
@@ -77,6 +78,8 @@ class Ring:
         self.frame_lane = Lane(words, _FRAME_HEAD, self._frames)
         #: Commands into the loop.
         self.mailbox = Mailbox(words, _COMMAND_TAIL, Lane(words, _COMMAND_HEAD, commands))
+        late_at = events_at + events.nbytes + commands.nbytes
+        self._late: NDArray[np.int32] = np.ndarray((self._row_count,), np.int32, shared.bytes, late_at)
         self._scratch: NDArray[np.float64] = np.zeros(words[_WIDTH])
         self._full = False
         self._row_head, self._frame_head, self._lost = words[_ROW_HEAD], words[_FRAME_HEAD], words[_LOST]
@@ -90,7 +93,7 @@ class Ring:
         Failure
             When the shared memory does not hold it.
         """
-        beside = (_EVENTS + _COMMANDS) * COMMAND_DTYPE.itemsize
+        beside = (_EVENTS + _COMMANDS) * COMMAND_DTYPE.itemsize + 4 * rows
         shared = SharedMemory.create(_HEADER_BYTES + rows * row_width * 8 + frames * _FRAME_BYTES + beside)
         np.ndarray((len(shared.bytes),), np.uint8, shared.bytes)[:] = 0  # touch every page now
         words = memoryview(shared.bytes)[:_HEADER_BYTES].cast("q")
@@ -137,6 +140,10 @@ class Ring:
         return self._words[_CLOSED] != 0
 
     # The writer's side
+
+    def note_late(self, late_us: int) -> None:
+        """Tell how late [us] the tick begins whose row is written next."""
+        self._late[self._row_head % self._row_count] = min(late_us, _LATEST_US)
 
     def next_row(self) -> NDArray[np.float64]:
         """Return the slot to fill in place; a scratch row that leads nowhere while the ring is full."""
@@ -241,6 +248,14 @@ class Ring:
             row: NDArray[np.float64] = self._rows[(head - 1) % self._row_count].copy()
             if self._words[_ROW_HEAD] - head < self._row_count - 1:
                 return row
+
+    def late_us(self, ticks: int) -> NDArray[np.int32]:
+        """Copy how late [us] the last ticks began, up to so many, the newest last."""
+        head = self._words[_ROW_HEAD]
+        found: NDArray[np.int32] = self._late[
+            np.arange(max(0, head - min(ticks, self._row_count)), head) % self._row_count
+        ]
+        return found
 
     def close(self) -> None:
         """Let go of the ring; the last one to do so removes it. Rows that were read stay valid."""

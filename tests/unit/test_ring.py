@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -240,3 +241,14 @@ def test_shared_memory_without_room_says_where_and_how_much(monkeypatch: pytest.
     monkeypatch.setattr(os, "posix_fallocate", full)
     with pytest.raises(Failure, match=r"has no room for \d+ MB of shared memory \(No space left on device\)"):
         Ring.create(WIDTH)
+
+
+def test_how_late_ticks_began_is_told_for_the_last_of_them() -> None:
+    with closing(Ring.create(2, rows=8, frames=8)) as ring, closing(Ring.attach(ring.name)) as reader:
+        assert reader.late_us(5).tolist() == []
+        for tick in range(11):
+            ring.note_late(100 * tick if tick < 10 else 2**40)
+            ring.next_row()[:] = tick
+            ring.commit()
+        assert reader.late_us(3).tolist() == [800, 900, 2**31 - 1]
+        assert len(reader.late_us(100)) == 8

@@ -46,10 +46,10 @@ def test_the_stalk_moves_the_wiper_and_off_parks_it(page: Page) -> None:
     expect(page.locator("#stalk-state")).to_have_text("ECU: off")
     until(lambda: output(page, "park_contact") == 1.0 and output(page, "crank_speed_rad_s") == 0.0)
     page.locator("#stalk-flick").click()
-    expect(page.locator("#stalk-state")).to_have_text("ECU: flick")
+    expect(page.locator("#events")).to_contain_text("ecu state off -> flick")
     expect(page.locator("#stalk-state")).to_have_text("ECU: off")
     page.locator("#stalk-wash").click()
-    expect(page.locator("#stalk-state")).to_have_text("ECU: wash_wipes")
+    expect(page.locator("#events")).to_contain_text("ecu state washing -> wash_wipes")
     expect(page.locator("#stalk-state")).to_have_text("ECU: off")
 
 

@@ -33,9 +33,6 @@ export function health(session) {
     say(overruns, `overruns ${value("overruns")}`);
     overruns.classList.toggle("bad", value("overruns") > 0);
     say(latency, `worst ${value("worst_latency_us")} µs`);
-    const quantile = session.samples.columns.has("status.latency_us") ? session.state.latency_p99_us : undefined;
-    p99.hidden = quantile === undefined;
-    if (quantile !== undefined) say(p99, `p99 ${quantile} µs`);
     say(lost, `lost ${value("ring_lost")} + ${session.samples.lost}`);
     lost.classList.toggle("bad", value("ring_lost") > 0);
     say(recording, recordings[value("recording")] === "off" ? "not recorded" : `recording ${recordings[value("recording")]}`);
@@ -55,6 +52,7 @@ export function health(session) {
 
   session.addEventListener("row", row);
   session.addEventListener("state", state);
+  session.addEventListener("frames", (event) => say(p99, `p99 ${event.detail.late_p99_us} µs`));
   session.addEventListener("stale", (event) => {
     banner.hidden = event.detail === "";
     say(banner, `No new data since ${samples.timeS.toFixed(1)} s: ${event.detail}. What you see is old; controls are off.`);
