@@ -22,12 +22,13 @@ class LeadHolder:
         self.asking: list[int] = []
         self.channel: RunChannel | None = None
         self._seen_s = 0.0
+        self._silent: int | None = None
 
     async def ask(self, page: int) -> None:
         """Give a page the lead if nobody has it; else note that it asks."""
         if self.holder is None:
             self.channel = await asyncio.to_thread(self._connect)
-            self.holder, self._seen_s = page, _now_s()
+            self.holder, self._seen_s, self._silent = page, _now_s(), None
         elif page != self.holder and page not in self.asking:
             self.asking.append(page)
         self._changed()
@@ -41,6 +42,8 @@ class LeadHolder:
         """Let go of the lead, and of all that is held; the first that asks gets it."""
         if page in self.asking:
             self.asking.remove(page)
+        if page == self._silent:
+            self._silent = None
         if page == self.holder:
             channel, self.channel, self.holder = self.channel, None, None
             if channel is not None:
@@ -49,10 +52,19 @@ class LeadHolder:
                 await self.ask(self.asking.pop(0))
         self._changed()
 
-    def alive(self, page: int) -> None:
-        """Note a sign of life."""
+    async def alive(self, page: int) -> None:
+        """Note a sign of life; a page that was silent has the lead again, if nobody else has it by now."""
         if page == self.holder:
             self._seen_s = _now_s()
+        elif page == self._silent and self.holder is None:
+            await self.ask(page)
+
+    async def lose(self) -> None:
+        """Take the lead from a page that is silent."""
+        page = self.holder
+        if page is not None:
+            await self.give_up(page)
+            self._silent = page
 
     @property
     def silent(self) -> bool:

@@ -42,7 +42,7 @@ class Requests:
 
     async def do_alive(self, seat: "Viewer", message: dict[str, Any]) -> Answer:
         """Note a sign of life."""
-        self._screen.lead.alive(seat.number)
+        await self._screen.lead.alive(seat.number)
         return {}
 
     async def do_lead(self, seat: "Viewer", message: dict[str, Any]) -> Answer:
@@ -141,8 +141,12 @@ class Requests:
         self._must_lead(seat)
         if self._screen.recording:
             name, self._screen.recording = self._screen.recording, ""
-            await self._screen.lead.command(seat.number, "stop_recording")
-            self._screen.log_changed(f"recording {name} is whole")
+            words = f"recording {name} is NOT complete"
+            try:
+                await self._screen.lead.command(seat.number, "stop_recording")
+                words = f"recording {name} is whole"
+            finally:
+                self._screen.log_changed(words)
         else:
             await self._screen.logger.stop()
         return {}

@@ -90,9 +90,12 @@ class Screen:
     async def leave(self, number: int) -> None:
         """Take the lead from a page; its waveform ends."""
         if self.lead.holder == number:
-            self.waveform.stop()
-            self.scenario.stop()
+            self._stop_plays()
         await self.lead.give_up(number)
+
+    def _stop_plays(self) -> None:
+        self.waveform.stop()
+        self.scenario.stop()
 
     async def _answer(self, seat: Viewer, message: dict[str, Any]) -> None:
         wanted, number = message.get("do"), message.get("id")
@@ -160,9 +163,10 @@ class Screen:
             if new:
                 newest = new[-1]["number"]
                 self._tell_all({"told": "events", "events": new})
-            if self.lead.silent and self.lead.holder is not None:
+            if self.lead.silent:
                 self.happenings.add(self.now_s, "lead", "the page in the lead was silent: what it held is released")
-                await self.leave(self.lead.holder)
+                self._stop_plays()
+                await self.lead.lose()
             self.parts.frames.look()
             looks += 1
             if looks % 3 == 0:

@@ -44,6 +44,7 @@ export function health(session) {
     const { state: told, leads } = session;
     say(lead, leads ? "You have the lead: give it up" : told.lead === null ? "Take the lead" : told.asking.includes(session.page) ? "Asked for the lead" : "Watching: ask for the lead");
     lead.setAttribute("aria-pressed", String(leads));
+    lead.hidden = told.recorded !== undefined;
     const others = told.asking.filter((page) => page !== session.page);
     asking.hidden = !(leads && others.length);
     say(asking, `${others.length} page${others.length > 1 ? "s" : ""} asking for the lead`);

@@ -28,7 +28,7 @@ export function manual(session) {
     }
     const held = session.samples.value("owner.relay_on") === 3;
     const safe = held ? "Commands of the bus are missing: the safe state holds the relays open, also against the hand. " : "";
-    say(note, safe + (session.state.stalk === false ? "No stalk: the interface virtual reaches no ECU." : ""));
+    say(note, safe + (session.recorded ? "A recording: nothing can be changed." : session.state.stalk === false ? "No stalk: the interface virtual reaches no ECU." : ""));
   });
   const modes = ["override", "set"].map((manner) => element("button", {
     title: manner === "override" ? "a change holds the input until it is released, or this page goes" : "a change stays until a frame says otherwise",

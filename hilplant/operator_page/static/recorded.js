@@ -16,6 +16,7 @@ export function recorded(session, plots) {
     if (waiting) return;
     waiting = true;
     try {
+      session.rowAt = 0;
       await session.link.ask("at", { time_s: at });
     } catch (error) {
       say(told, error.message);

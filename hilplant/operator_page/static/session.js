@@ -3,10 +3,12 @@ import { Link } from "/shared/link.js";
 import { Samples } from "./samples.js";
 
 const STALE_MS = 500;
+// Texts and controls are written anew no more often than they can be read.
+const ROW_MS = 90;
 const KEPT_POINTS = 2400;
 
 export class Session extends EventTarget {
-  // Events: row (a newest row has come), state, events, stale (detail: words, "" when alive again), chosen.
+  // Events: sample (a block has come), row (the same, ten times a second), state, events, stale (detail: words, "" when alive again), chosen.
   constructor(description) {
     super();
     this.description = description;
@@ -20,6 +22,7 @@ export class Session extends EventTarget {
     this.tick = -1;
     this.tickSeen = performance.now();
     this.heardAt = performance.now();
+    this.rowAt = 0;
     this.waiting = new Map();
     this.manner = "override";
     this.moved = "";
@@ -33,7 +36,7 @@ export class Session extends EventTarget {
     setInterval(() => this.look(), 100);
     // A worker's clock goes on while the page is hidden, the page's own is slowed down.
     const clock = new Worker("alive.js");
-    clock.onmessage = () => { if (this.leads) this.link.say("alive"); };
+    clock.onmessage = () => this.link.say("alive");
   }
 
   get leads() {
@@ -89,6 +92,9 @@ export class Session extends EventTarget {
       this.tickSeen = performance.now();
       this.say("");
     }
+    this.dispatchEvent(new Event("sample"));
+    if (this.heardAt - this.rowAt < ROW_MS) return;
+    this.rowAt = this.heardAt;
     this.dispatchEvent(new Event("row"));
   }
 

@@ -36,7 +36,7 @@ export function wiper(session) {
     say(told, `screen ${state}  crank ${figure((angle * 180) / Math.PI)}°  ${samples.value("out.park_contact") ? "at park" : ""}`);
   }
 
-  session.addEventListener("row", draw);
+  session.addEventListener("sample", draw);
   return element("section", { class: "panel", "aria-label": "Wiper" }, element("h2", {}, "Wiper", told), picture);
 }
 
