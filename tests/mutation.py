@@ -1,17 +1,20 @@
 """Change the code in one place at a time and see whether a test notices: which changes live, the tests do not cover.
 
-python tests/mutation.py --mutants 100 --seed 1 [--room models]     # a minute a mutant; not part of CI
+python tests/mutation.py --mutants 100 --seed 1 [--room models] [--near]
 
-Works on a copy of the checkout. The same seed and number give the same mutants of the same code. Exit code 1 when a
-mutant lives; each is printed with file, line and change, to be killed by a test or argued to change nothing.
+Works on a copy of the checkout, with nothing compiled: the plant runs as Python. Each mutant is tried in a fork of a
+process that has the libraries loaded, first on the tests that name its module. The same seed and number give the same
+mutants of the same code. Exit code 1 when a mutant lives; each is printed with file, line and change, to be killed by a
+test or argued to change nothing.
 """
 
 import argparse
 import ast
+import importlib
 import os
 import random
+import resource
 import shutil
-import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -21,14 +24,30 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[1]
 #: The rooms, or files, whose code is changed, and the tests that have to notice (names of test files begin so).
 ROOMS = {
-    "models": ("models", "park", "motor", "plant", "networks", "surrogates", "dynamics_reduction"),
+    "models": (
+        "models",
+        "park",
+        "motor",
+        "plant",
+        "networks",
+        "surrogates",
+        "dynamics_reduction",
+        "terminals",
+        "heat",
+        "wiper_under",
+    ),
     "bus/protection.py": ("bus", "loop", "mutants"),
     "bus/codec.py": ("bus", "mutants"),
     "runtime/loop.py": ("loop", "ring", "daemon", "velocity", "mutants", "soak"),
     "ecu": ("ecu", "mutants"),
 }
 TESTS = ("unit", "property", "oracle", "scenario")
-TIMEOUT_S = 900
+#: These compile, start processes or simulate for minutes: without compiled code they are not of use here.
+TOO_SLOW = ("in_c", "against_solver", "start", "soak", "daemon", "surrogates_search", "ecu_random_search", "processes")
+LIBRARIES = ("numpy", "scipy.optimize", "scipy.integrate", "numba", "can", "cantools", "pydantic", "yaml", "pyarrow",
+             "typer", "e2e", "hypothesis", "pytest")  # fmt: skip
+#: CPU time of one mutant's tests, beyond which it is taken to have no end [s].
+LONGEST_S = 600
 _COMPARE = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq}
 _ARITHMETIC = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.BitAnd: ast.BitOr}
 
@@ -105,29 +124,52 @@ def chosen(rooms: list[str], number: int, seed: int) -> list[Mutant]:
     return drawn
 
 
-def tests_for(file: Path) -> list[str]:
-    """Return the test files that have to notice a change of a file."""
+def tests_for(file: Path, near: bool = False) -> list[str]:
+    """Return the test files that have to notice a change of a file, those that name its module first, or `near` alone.
+
+    Near are those that name the module; where none does, those of its room that are unit tests.
+    """
     name = file.relative_to(ROOT / "hilplant").as_posix()
     words = next(words for room, words in ROOMS.items() if name.startswith(room))
-    found = [path for folder in TESTS for word in words for path in (ROOT / "tests" / folder).glob(f"test_{word}*.py")]
-    return sorted({path.relative_to(ROOT).as_posix() for path in found})
+    found = {path for folder in TESTS for word in words for path in (ROOT / "tests" / folder).glob(f"test_{word}*.py")}
+    module = "hilplant." + name.removesuffix(".py").replace("/", ".")
+    naming = {path for path in found if f"{module} import" in path.read_text(encoding="utf-8")}
+    useful = [path for path in found if not any(word in path.stem for word in TOO_SLOW)]
+    ordered = sorted(useful, key=lambda path: (path not in naming, TESTS.index(path.parent.name), path.stat().st_size))
+    if near:
+        ordered = [path for path in ordered if path in naming or (not naming and path.parent.name == "unit")]
+    return [path.relative_to(ROOT).as_posix() for path in ordered]
 
 
-def killed(mutant: Mutant, copy: Path) -> bool:
-    """Put the change into the copy, run the tests there, take it out again."""
+def killed(mutant: Mutant | None, tests: list[str], copy: Path, turn: int) -> bool:
+    """Put a change into the copy, run the tests there, take it out again; without one, the tests have to pass."""
+    if mutant is None:
+        return _ran(tests, copy) != 0
     changed = copy / mutant.file.relative_to(ROOT)
     whole = changed.read_text(encoding="utf-8")
     changed.write_text(mutant.text, encoding="utf-8")
-    environment = os.environ | {"PYTHONPATH": str(copy), "NUMBA_CACHE_DIR": str(copy / "compiled")}
-    words = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-m", "not vcan"]
+    os.utime(changed, (turn, turn))  # compiled bytes of an earlier turn are known as old
     try:
-        ran = subprocess.run([*words, *tests_for(mutant.file)], cwd=copy, env=environment, timeout=TIMEOUT_S,
-                             stdin=subprocess.DEVNULL, capture_output=True, check=False)  # fmt: skip
-        return ran.returncode == 1
-    except subprocess.TimeoutExpired:
-        return True
+        return _ran(tests, copy) != 0
     finally:
         changed.write_text(whole, encoding="utf-8")
+
+
+def _ran(tests: list[str], copy: Path) -> int:
+    """Run tests in a fork; 0 when all pass."""
+    child = os.fork()
+    if child == 0:
+        os.setsid()
+        os.chdir(copy)
+        sys.path.insert(0, str(copy))
+        os.environ["PYTHONPATH"] = str(copy)
+        resource.setrlimit(resource.RLIMIT_CPU, (LONGEST_S, LONGEST_S + 1))
+        silence = os.open(os.devnull, os.O_RDWR)
+        for number in (0, 1, 2):
+            os.dup2(silence, number)
+        options = ["-q", "-x", "-p", "no:cacheprovider", "-m", "not vcan and not browser", "-o", "timeout=0"]
+        os._exit(int(importlib.import_module("pytest").main([*options, *tests])))
+    return os.waitpid(child, 0)[1]
 
 
 def main() -> int:
@@ -136,16 +178,26 @@ def main() -> int:
     parser.add_argument("--mutants", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--room", choices=list(ROOMS), help="this room alone")
+    parser.add_argument(
+        "--near", action="store_true", help="only the tests that name the changed module: quick, stricter"
+    )
+    parser.add_argument("--check", action="store_true", help="first see that all tests pass without a mutant")
     parser.add_argument("--list", action="store_true", help="list the mutants, run nothing")
     options = parser.parse_args()
     drawn = chosen([options.room] if options.room else list(ROOMS), options.mutants, options.seed)
     alive = 0
+    os.environ["NUMBA_DISABLE_JIT"] = "1"
+    for library in () if options.list else LIBRARIES:
+        importlib.import_module(library)
     with tempfile.TemporaryDirectory(prefix="hilplant-mutants-") as folder:
         copy = Path(folder) / "copy"
         if not options.list:
             shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".*", "__pycache__"))
-        for mutant in drawn:
-            died = None if options.list else killed(mutant, copy)
+            for tests in {tuple(tests_for(mutant.file, options.near)) for mutant in drawn} if options.check else ():
+                if killed(None, list(tests), copy, 0):
+                    sys.exit(f"these fail without a mutant: {' '.join(tests)}")
+        for turn, mutant in enumerate(drawn, 1):
+            died = None if options.list else killed(mutant, tests_for(mutant.file, options.near), copy, turn)
             alive += died is False
             place = f"{mutant.file.relative_to(ROOT)}:{mutant.line}"
             verdict = {None: "", True: "killed  ", False: "LIVES   "}[died]

@@ -26,7 +26,8 @@ _SIGNALS = "signal of the database: what it is to the plant"
 
 
 _FD = "whether its frames are FD; as in the database when left out, and FD beyond 8 bytes"
-_BYTES = "length of its frames where it is longer than in the database; the rest is padding, sent as 0"
+_BYTES = "length of its frames where it is longer than in the database; the rest is padding"
+_PADDING = "byte that fills what no signal uses where it is sent, such as 0xFF or 0xAA"
 
 
 class FrameEntry(Checked):
@@ -34,6 +35,7 @@ class FrameEntry(Checked):
 
     fd: bool | None = Field(default=None, description=_FD)
     bytes: Annotated[int, Field(ge=1, le=64)] | None = Field(default=None, description=_BYTES)
+    padding: Annotated[int, Field(ge=0, le=255)] = Field(default=0, description=_PADDING)
 
 
 class ReceivedEntry(FrameEntry):

@@ -35,6 +35,7 @@ def framed(spot: Spot, message: Any, entry: FrameEntry) -> Any:
     on_bus = copy.copy(message)
     on_bus.is_fd = message.is_fd if entry.fd is None else entry.fd
     fitting = (length for length in FD_LENGTHS if length >= message.length)
+    on_bus.unused_bit_pattern = entry.padding
     on_bus.length = entry.bytes or (next(fitting, message.length) if on_bus.is_fd else message.length)
     if on_bus.length < message.length:
         spot.note("bytes", text=f"{message.name} has {message.length} bytes in the database, so never {entry.bytes}")

@@ -103,6 +103,7 @@ def _strictly(text: str, ending: str) -> Database:
     if not isinstance(database, Database):
         raise _DiagnosticsError
     for message in database.messages:
+        message.unused_bit_pattern = 0  # cantools supposes 0xFF where a format does not say
         if message.length > CLASSIC_BYTES and message.protocol != "j1939" and not message.is_container:
             message.is_fd = True  # a DBC need not say so: no classic frame is so long
     return database

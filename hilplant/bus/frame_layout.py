@@ -94,9 +94,12 @@ def _on_other_page(message: Message, one: DatabaseSignal, other: DatabaseSignal)
 def base_payload(message: Message, mapped: set[int]) -> bytes:
     """Return the payload of the signals that are not mapped, at their initial values.
 
-    Places that are `mapped` are 0, and so are those that no signal uses and those of signals on a page.
+    Places that are `mapped` are 0, and so are those of signals on a page; those that no signal uses have the message's
+    pattern of unused bits.
     """
-    whole = 0
+    used = mapped.union(*(places(signal) for signal in message.signals))
+    pattern = message.unused_bit_pattern
+    whole = sum(1 << place for place in range(8 * message.length) if place not in used and pattern >> place % 8 & 1)
     for signal in message.signals:
         if signal.multiplexer_signal is None:
             raw = _initial_bits(signal)

@@ -169,6 +169,21 @@ def test_counter_and_checksum_of_every_profile_can_be_made_wrong_and_right(profi
     assert checker.check(forger.signed(signed, 4)) is OK
 
 
+@pytest.mark.parametrize("profile", [1, 4, 5, 6, 7, 11])
+@pytest.mark.parametrize("offset", [0, 1, 7, 8, 9, 21, 40, 41])
+def test_a_corrupted_frame_differs_in_one_bit_of_its_header_that_is_no_counter(profile: int, offset: int) -> None:
+    from hilplant.bus.protection import Forger
+
+    protection = Protection(profile, 64, data_id=7, offset=offset)
+    forger, data = Forger(protection), bytearray(64)
+    Protector(protection).protect(data)
+    changed = int.from_bytes(data, "little") ^ int.from_bytes(forger.corrupted(bytes(data)), "little")
+    assert changed.bit_count() == 1
+    assert changed.bit_length() - 1 in protection.reserved_places()
+    assert forger.counter(forger.corrupted(bytes(data))) == forger.counter(data)
+    assert Checker(protection).check(forger.corrupted(bytes(data))) is CRC
+
+
 def test_a_value_is_written_into_its_bits_alone() -> None:
     rig = Rig(inserted("value_wrong", About("Command", "Level", 50.0), THREE)).run(6)
     assert [frames[0].data[2:] for frames in rig.heard] == [b"\1\0", b"\1\1", b"\1d", b"\1d", b"\1d", b"\1\5"]

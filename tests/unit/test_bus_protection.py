@@ -149,6 +149,14 @@ def test_after_a_reset_any_counter_is_good_again() -> None:
     assert checker.check(made[8]) is FrameCheck.OK
 
 
+@pytest.mark.parametrize(("profile", "header"), [(1, 2), (4, 12), (5, 3), (6, 5), (7, 20), (11, 2)])
+@pytest.mark.parametrize("offset", [0, 3, 8])
+def test_a_header_that_just_fits_is_taken_and_one_byte_less_refused(profile: int, header: int, offset: int) -> None:
+    assert Protection(profile, offset + header, data_id=1, offset=offset).offset == offset
+    with pytest.raises(ProtectionError, match="does not fit"):
+        Protection(profile, offset + header - 1, data_id=1, offset=offset)
+
+
 def test_the_free_nibble_beside_a_short_counter_stays_free() -> None:
     assert Protection(1, 8).reserved_places() == frozenset(range(12))
     assert Protection(1, 8, data_id_mode="nibble").reserved_places() == frozenset(range(16))

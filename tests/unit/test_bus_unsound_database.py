@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hilplant.bench import check_bench, load_bench
-from hilplant.bus.database import DatabaseError, load_sound, parse_database
+from hilplant.bus.database import DatabaseError, load_database, load_sound, parse_database
 
 HEAD = 'VERSION ""\nNS_ :\n\tCM_\n\tVAL_\nBS_:\nBU_: ECU PLANT\n'
 COMMAND = """BO_ 288 Cmd: {length} ECU
@@ -113,6 +113,23 @@ def test_frames_are_padded_to_a_length_that_there_is(
     assert (received.fd, received.length) == (sent.fd, sent.length) == (fd, on_bus)
     assert received.decode(b"\3" + bytes(on_bus - 1)) == (1.0, 1.0)
     assert len(sent.encode([1.0] * 40)[0]) == on_bus
+
+
+@pytest.mark.parametrize("padding", [0, 0xFF, 0xAA, 0x55, 0xCC])
+@pytest.mark.parametrize(("length", "keys"), [(8, ""), (5, "bytes: 8,"), (9, ""), (5, "fd: true, bytes: 16,")])
+def test_what_no_signal_uses_has_the_padding(tmp_path: Path, padding: int, length: int, keys: str) -> None:
+    """cantools' own padding is the truth within the database's length; the mapped bits are the first two."""
+    path = bench(tmp_path, HEAD + COMMAND.format(length=length))
+    path.write_text(path.read_text().replace("{timeout_ms", f"{{{keys} padding: {padding}, timeout_ms"))
+    made = load_bench(path)
+    (sent,) = made.ecu_side().send
+    frame = sent.encode([1.0] * 40)[0]
+    message = load_database(path.with_name("x.dbc")).get_message_by_name("Cmd")
+    message.unused_bit_pattern = padding
+    values = dict.fromkeys((signal.name for signal in message.signals), 0)
+    expected = message.encode(values | {"On": 1, "Fast": 1}, padding=True)
+    assert frame == expected.ljust(sent.length, bytes([padding]))
+    assert made.receive[0].decode(frame) == (1.0, 1.0)
 
 
 @pytest.mark.parametrize(
