@@ -47,7 +47,7 @@ TOO_SLOW = ("in_c", "against_solver", "start", "soak", "daemon", "surrogates_sea
 LIBRARIES = ("numpy", "scipy.optimize", "scipy.integrate", "numba", "can", "cantools", "pydantic", "yaml", "pyarrow",
              "typer", "e2e", "hypothesis", "pytest")  # fmt: skip
 #: CPU time of one mutant's tests, beyond which it is taken to have no end [s].
-LONGEST_S = 600
+LONGEST_S = 180
 _COMPARE = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq}
 _ARITHMETIC = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.BitAnd: ast.BitOr}
 
