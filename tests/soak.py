@@ -39,8 +39,9 @@ SUPPLIES_V = (9.0, 11.0, 12.5, 13.5, 14.4, 16.0)
 FIRST_OUTPUT = 2 + len(INPUTS)
 #: Largest part of the energy that may stay unexplained, beyond what jumps of the power between two samples hide.
 BALANCE = 0.005
+#: A hand that moves the stalk there and back within 0.1 s is counted as `alternating`, as docs/can.md says.
+NO_FAULTS = ("tick", "overruns", "worst_latency_us", "alternating")
 #: After the first rounds, in which every buffer has its full size.
-NO_FAULTS = ("tick", "overruns", "worst_latency_us")
 SETTLED_ROUNDS, MOST_GROWTH_MB = 3, 4.0
 
 
