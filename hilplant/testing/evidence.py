@@ -41,7 +41,7 @@ class Evidence:
     """Rows as the loop writes them (tick, deadline, inputs, outputs, status), and every frame with its tick.
 
     `edges` are the ticks at which faults of a name came and went; `start` is the step, counted as the deadlines are,
-    that is the scenario's time 0.
+    that is the scenario's time 0; `hidden` are steps that count as lost for another reason than the loop's.
     """
 
     step_ns: int
@@ -50,6 +50,7 @@ class Evidence:
     frames: Sequence[Frame]
     edges: Sequence[FaultEdge] = ()
     start: int = 0
+    hidden: Sequence[int] = ()
 
     def fault_marks(self) -> dict[str, float]:
         """Return when each fault first came and last went [s], by a name for people; what stays has no end."""
@@ -74,6 +75,7 @@ class Evidence:
         seen[places] = True
         lost = np.diff(rows[:, LOSSES], axis=0, prepend=0.0).any(axis=1)
         seen[places[lost]] = False
+        seen[[step for step in self.hidden if step < count]] = False
         names = dict.fromkeys(name for each in wanted for name in each.signals)
         signals = {name: self._signal(name, rows, places, count, database)[self.start :] for name in names}
         messages = {each.rule.message for each in wanted if isinstance(each.rule, Frames)}

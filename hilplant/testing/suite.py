@@ -46,8 +46,17 @@ def scenario_files(names: Sequence[str]) -> list[Path]:
     return found
 
 
+@dataclass(frozen=True)
+class Where:
+    """Where scenarios run: on a `channel` of the bench's interface, None for virtual time; in how many processes."""
+
+    channel: str | None = None
+    stand_in: bool = True
+    jobs: int | None = None
+
+
 def run_tests(
-    paths: Iterable[Path], bench_name: str | None, stand_in: bool, tell: Callable[[ScenarioTest], None]
+    paths: Iterable[Path], bench_name: str | None, where: Where, tell: Callable[[ScenarioTest], None]
 ) -> list[ScenarioTest]:
     """Run scenarios, all read before the first runs; `tell` hears of each when it is judged, in their order."""
     benches = Benches()
@@ -56,11 +65,11 @@ def run_tests(
         if not scenario.expect:
             raise Failure(f"{scenario.path}: expects nothing, so that it tests nothing; give it an `expect` section")
     orders = [
-        _Order(each, benches.named(bench_name or each.bench or DEFAULT_BENCH), stand_in, bench_name)
+        _Order(each, benches.named(bench_name or each.bench or DEFAULT_BENCH), where.stand_in, bench_name)
         for each in scenarios
     ]
     done = []
-    for test in _results(orders, benches):
+    for test in _on_interface(orders, where.channel) if where.channel else _results(orders, benches, where.jobs):
         done.append(test)
         tell(test)
     return done
@@ -79,9 +88,18 @@ class _Order(NamedTuple):
 _ORDERS: list[_Order] = []
 
 
-def _results(orders: list[_Order], benches: Benches) -> Iterator[ScenarioTest]:
+def _on_interface(orders: list[_Order], channel: str) -> Iterator[ScenarioTest]:
+    """Run all on a channel, one after the other."""
+    from hilplant.testing.on_interface import run_on_interface
+
+    for order in orders:
+        yield run_on_interface(order.scenario, order.bench, channel, order.stand_in, order.bench_name)
+
+
+def _results(orders: list[_Order], benches: Benches, jobs: int | None) -> Iterator[ScenarioTest]:
     """Run all, in their order; on several CPUs where the system can copy a process that has compiled everything."""
-    workers = min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1, len(orders))
+    cpus = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
+    workers = min(jobs or cpus, len(orders))
     if workers < 2 or "fork" not in multiprocessing.get_all_start_methods():
         yield from (run_virtually(*order) for order in orders)
         return

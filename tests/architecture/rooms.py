@@ -73,7 +73,7 @@ ARROWS: dict[str, str] = {
     "plots": f"{_OFFLINE} simulation identify train",
     "reports": f"{_OFFLINE} identify train plots",
     "perf": f"{_OFFLINE} simulation c_source",
-    "testing": f"{_OFFLINE} simulation plots",
+    "testing": f"{_OFFLINE} channel simulation plots",
     "doctor": "extras jit",
     "modelling": (f"{_OFFLINE} simulation measurements identify train plots reports library web channel"),
     "operator_page": f"{_OFFLINE} simulation channel companion web testing",

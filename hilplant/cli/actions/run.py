@@ -5,7 +5,7 @@ from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from hilplant.bench import Bench, load_bench
 from hilplant.bench.assembly import initial_state
@@ -32,6 +32,13 @@ if TYPE_CHECKING:
     from hilplant.control.seat import LoopSeat
 
 
+class Played(NamedTuple):
+    """A scenario that the loop is to play, and whether it is judged beside it."""
+
+    path: Path
+    judged: bool
+
+
 def run_daemon(  # noqa: PLR0913, PLR0917
     name: str,
     seconds: float | None,
@@ -40,11 +47,11 @@ def run_daemon(  # noqa: PLR0913, PLR0917
     inside: Inside | None = None,
     door: bool = True,
     page: PageOptions | None = None,
-    scenario: Path | None = None,
+    scenario: Played | None = None,
 ) -> Summary:
     """Serve a bench and say on the terminal how it started and how it ended."""
     bench = load_bench(name)
-    played = None if scenario is None else load_scenario(scenario)
+    played = None if scenario is None else load_scenario(scenario.path)
     if played is not None:
         bench = replace(bench, state_row=initial_state(bench.parameters, bench.initial | played.initial))
     if channel is not None:
@@ -67,9 +74,8 @@ def run_daemon(  # noqa: PLR0913, PLR0917
                 if played is None:
                     summary = serve(bench, seconds, ring, stop, on_start, prepare)
                 else:
-                    judge = (
-                        judging(name, played.path, ring, bench.loop.cpu) if played.expect else nullcontext(Verdict())
-                    )
+                    judges = played.expect and scenario is not None and scenario.judged
+                    judge = judging(name, played.path, ring, bench.loop.cpu) if judges else nullcontext(Verdict())
                     with judge as verdict:
                         play = partial(_play, played, bench, stop, prepare)
                         summary = serve(bench, seconds, ring, stop, on_start, play)

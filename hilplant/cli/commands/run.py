@@ -49,6 +49,7 @@ def run(  # noqa: PLR0913, PLR0917
     scenario: Annotated[
         Path | None, typer.Option(help="play this scenario, judge what it expects, and end with it")
     ] = None,
+    verdicts: Annotated[bool, typer.Option(hidden=True)] = True,
     json_file: JsonFile = None,
 ) -> None:
     """Serve a bench on its CAN interface.
@@ -57,7 +58,7 @@ def run(  # noqa: PLR0913, PLR0917
     loop in every tick, and not by frames; docs/control.md tells the names. With --scenario, exit code 0 only if all
     that it expects holds.
     """
-    from hilplant.cli.actions.run import run_daemon
+    from hilplant.cli.actions.run import Played, run_daemon
     from hilplant.ecu.loop_controller import Inside
     from hilplant.recording.beside_loop import RecordTo
     from hilplant.recording.rotation import Rotation
@@ -71,8 +72,9 @@ def run(  # noqa: PLR0913, PLR0917
     to = None if record is None else RecordTo(record, rotation)
     claim(json_file)
     inside = None if controller is None else Inside(controller, reference or "3.14", budget_us)
+    played = None if scenario is None else Played(scenario, verdicts)
     page_wanted = page_options(page, logs, browser, stream)
-    summary = run_daemon(bench, seconds, to, channel, inside, not no_channel, page_wanted, scenario)
+    summary = run_daemon(bench, seconds, to, channel, inside, not no_channel, page_wanted, played)
     missing = " | ".join(f"{given.name}: {given.fix}" for given in summary.privileges if not given.granted)
     with ended_by_signals(StopRequest()):  # one more Ctrl-C shall not cost the figures
         write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))

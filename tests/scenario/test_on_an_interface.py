@@ -1,0 +1,70 @@
+"""The same test files in virtual time and on an interface, in real time; an overloaded loop decides nothing."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+FILES = Path(__file__).parents[1] / "data" / "on_a_bus"
+#: A multicast group is a bus that other processes reach without CAN in the kernel.
+GROUP = "239.74.163.2"
+BENCH = """
+extends: polynomial.yaml
+name: on a bus
+bus:
+  interface: {{interface: udp_multicast, channel: {group}, port: {port}}}
+"""
+BUSY = """
+import os
+os.sched_setaffinity(0, {{{cpu}}})
+try:
+    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(80))
+except OSError:
+    pass
+while True:
+    pass
+"""
+
+
+def tested(bench: Path | str, told: Path, *more: str, env: dict[str, str] | None = None) -> dict[str, Any]:
+    command = [sys.executable, "-m", "hilplant", "test", *more, "--bench", str(bench), "--json", str(told)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=env)
+    assert done.returncode in {0, 1}, done.stderr
+    return {each["file"]: each for each in json.loads(told.read_text())["results"]}
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Path:
+    pytest.importorskip("msgpack")
+    path = tmp_path / "on_a_bus.yaml"
+    path.write_text(BENCH.format(group=GROUP, port=43000 + os.getpid() % 2000))
+    return path
+
+
+def test_the_same_ten_files_get_the_same_verdicts_where_no_tick_was_lost(bench: Path, tmp_path: Path) -> None:
+    virtual = tested("polynomial", tmp_path / "virtual.json", str(FILES))
+    clocked = tested(bench, tmp_path / "clocked.json", str(FILES), "--on", GROUP)
+    assert len(virtual) == 10
+    assert {each["ruling"] for each in virtual.values()} == {"pass", "fail", "blocked"}
+    decided = {name for name, each in clocked.items() if each["ruling"] != "inconclusive"}
+    assert {name: clocked[name]["ruling"] for name in decided} == {name: virtual[name]["ruling"] for name in decided}
+
+
+def test_an_overloaded_loop_gives_inconclusive_never_fail_or_pass(bench: Path, tmp_path: Path) -> None:
+    """The loop stays on one CPU, with busy processes of its own priority."""
+    cpu = min(os.sched_getaffinity(0))
+    bench.write_text(bench.read_text() + f"loop: {{cpu: {cpu}}}\n")
+    spin = BUSY.format(cpu=cpu)
+    busy = [subprocess.Popen([sys.executable, "-c", spin]) for _ in range(2)]
+    try:
+        files = [str(FILES / name) for name in ("02_slow.yaml", "08_too_strict.yaml")]
+        found = tested(bench, tmp_path / "busy.json", *files, "--on", GROUP)
+    finally:
+        for each in busy:
+            each.kill()
+            each.wait()
+    assert {each["ruling"] for each in found.values()} == {"inconclusive"}
