@@ -66,6 +66,10 @@ class Inputs(NamedTuple):
     ambient_temperature_c: Annotated[float, real("degC", -60.0, 150.0, "temperature of the air around the motor")] = (
         20.0
     )
+    rain_mm_h: Annotated[
+        float, real("mm/h", 0.0, 500.0, "rain on the ground; wets the screen where water is modelled")
+    ] = 0.0
+    washer_pump: Annotated[float, flag("washer pump: 1 sprays the screen, where water is modelled", guarded=0.0)] = 0.0
 
 
 class Outputs(NamedTuple):
@@ -118,6 +122,11 @@ class Outputs(NamedTuple):
         float, real("degC", -100.0, 2000.0, "temperature of the winding; as at the start where heat is not modelled")
     ]
     thermal_switch: Annotated[float, flag("1 while the motor's thermal switch is open")]
+    wetness: Annotated[float, real("", 0.0, 1.0, "wetness of the screen: that of `screen`, or more by its water film")]
+    water_film_mm: Annotated[
+        float, real("mm", 0.0, 1e4, "mean thickness of the water on the screen; 0 where it is not modelled")
+    ]
+    rain_sensor: Annotated[float, real("", 0.0, 1.0, "signal of the rain sensor: 0 dry, towards 1 with the film")]
 
 
 class Status(NamedTuple):

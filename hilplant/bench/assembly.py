@@ -30,7 +30,7 @@ from hilplant.models.park_phase import phase_at_rest
 from hilplant.models.park_switch import cam_closed
 from hilplant.models.records import Parameters, State
 from hilplant.models.row import pack
-from hilplant.models.slow_records import HeatState
+from hilplant.models.slow_records import HeatState, WaterState, WearState
 from hilplant.signals import INPUTS
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
@@ -121,7 +121,9 @@ def initial_state(parameters: Parameters, initial: Mapping[str, Any]) -> NDArray
     heat = parameters.heat
     opened = heat.has_switch > 0.5 and heat.start_c >= heat.trip_c
     warm = HeatState(heat.start_c, heat.start_c, float(opened))
-    return pack(State(park_contact=contact, park_phase=phase, heat=warm)._replace(**initial))
+    worn, wet = WearState(parameters.wear.start_wipes), WaterState(parameters.water.start_mm)
+    state = State(park_contact=contact, park_phase=phase, heat=warm, wear=worn, water=wet)
+    return pack(state._replace(**initial))
 
 
 def _attempt(source: BenchSource) -> tuple[Bench | None, tuple[Problem, ...]]:

@@ -27,9 +27,9 @@ from hilplant.failure import Failure
 from hilplant.mechanics.coefficients import Aerodynamics, check_aerodynamics
 from hilplant.models.circuit import CIRCUITS
 from hilplant.models.load import LOADS
-from hilplant.models.mechanical_records import Obstacles
+from hilplant.models.mechanical_records import LinkageCondition, Obstacles
 from hilplant.models.records import Blade, Friction, Load, Parameters, ParkSwitch, Relays
-from hilplant.models.slow_records import Heat
+from hilplant.models.slow_records import Heat, Water, Wear
 from hilplant.units import MILLISECOND_NS, RAD_PER_DEG, SECOND_NS
 
 Blades = tuple[BladeEntry, BladeEntry]
@@ -76,12 +76,20 @@ def build_plant(spot: Spot, plant: PlantSection, step_ns: int) -> Plant | None:
         relays=plant.relays.record(step_ns) if plant.relays is not None else Relays(),
         heat=plant.heat.record() if plant.heat is not None else Heat(),
         obstacles=plant.obstacles.record() if plant.obstacles is not None else Obstacles(),
+        linkage=plant.backlash.record() if plant.backlash is not None else LinkageCondition(),
+        wear=plant.wear.record() if plant.wear is not None else Wear(),
+        water=_water(plant),
         networks=row_of_networks(trained.numbers, mover.numbers),
     )
     check_bounds(spot.inner("load"), trained, parameters, mechanics.table)
     return Plant(
         parameters, mechanics.table, motor, load, plant.screen, blades, mechanics, park_switch, plant, trained.file
     )
+
+
+def _water(plant: PlantSection) -> Water:
+    lean_rad = plant.screen.from_vertical_rad if plant.screen is not None else 0.0
+    return plant.water.record(lean_rad) if plant.water is not None else Water()
 
 
 def _blades(spot: Spot, section: BladesSection | None) -> Blades | None:

@@ -12,6 +12,7 @@ from hilplant.bench.motor_network_file import MotorNetworkFile
 from hilplant.bench.obstacle_section import ObstaclesSection
 from hilplant.bench.parts import LinkageFile, MotorFile, Referred, WithAssumptions
 from hilplant.bench.screen_parts import ScreenFile
+from hilplant.bench.slow_sections import BacklashSection, WaterSection, WearSection
 from hilplant.checked_yaml.checked import Checked, Container, MayBeHole, NotNegative, Real, wrong
 from hilplant.models.load import LOADS
 
@@ -202,4 +203,11 @@ class PlantSection(Container):
     heat: HeatSection | None = Field(default=None, description="how the motor gets warm; it stays cold when left out")
     obstacles: ObstaclesSection | None = Field(
         default=None, description="what stands in the arms' way; nothing when left out"
+    )
+    backlash: BacklashSection | None = Field(
+        default=None, description="play between crank and linkage; none when left out"
+    )
+    wear: WearSection | None = Field(default=None, description="how it wears with its wipes; not when left out")
+    water: WaterSection | None = Field(
+        default=None, description="water on the screen and rain sensor; `screen` alone tells wetness when left out"
     )

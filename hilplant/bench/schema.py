@@ -32,7 +32,8 @@ UNITS = {
     "_kg_m2": "kg m2", "_n_m_rad": "N m/rad", "_n_m_s": "N m s/rad", "_rad_s": "rad/s", "_mm_s": "mm/s",
     "_v_s": "V s/rad", "_n_m": "N m", "_m_s": "m/s", "_henry": "H", "_ohm": "ohm", "_deg": "deg", "_rad": "rad",
     "_m2": "m2", "_kg": "kg", "_ms": "ms", "_n": "N", "_m": "m", "_s": "s", "_v": "V", "_a": "A", "_j_k": "J/K",
-    "_w_k": "W/K", "_percent_k": "%/K", "_c": "degC",
+    "_w_k": "W/K", "_percent_k": "%/K", "_percent_s": "%/s", "_percent": "%", "_mm_h": "mm/h", "_mm": "mm",
+    "_c": "degC",
 }  # fmt: skip
 
 #: Groups whose keys a bench may inherit.

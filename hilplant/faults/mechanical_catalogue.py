@@ -48,6 +48,12 @@ def _at_side(side: str) -> list[FaultDefinition]:
                _set("obstacles.slip_rad", "slip_deg", math.radians(1.0))),
               (Quantity("torque_n_m", 0.0, 1000.0, "torque at the arm with which the ice holds [N m]"),
                Quantity("slip_deg", 0.01, 90.0, "how far the arm turns until the blade is free [deg]", 2.0))),
+        FaultDefinition(f"{side}_arm_lost", "mechanical", f"{side} arm lost with its blade",
+              "inertia, weight, drag and friction of arm and blade gone; the arm's angle shown is the rocker's",
+              (Change(f"linkage.{side}", "set", lambda values, step_s: 1.0),)),
+        FaultDefinition(f"{side}_link_broken", "mechanical", f"link to the {side} rocker broken",
+              "as the arm lost; the arm is shown where it was, and on its rocker again once it is whole",
+              (Change(f"linkage.{side}", "set", lambda values, step_s: 2.0),)),
         *(fault for way in _WAYS for fault in _at_end(side, way)),
     ]  # fmt: skip
 
@@ -55,6 +61,10 @@ def _at_side(side: str) -> list[FaultDefinition]:
 #: Every mechanical fault.
 MECHANICAL_FAULTS: tuple[FaultDefinition, ...] = (
     *(fault for side in _SIDES for fault in _at_side(side)),
+    FaultDefinition("backlash", "mechanical", "play between crank and linkage",
+          "the linkage moves by itself between the two flanks; where they meet both have one speed, without rebound",
+          (Change("linkage.backlash_rad", "add", lambda values, step_s: math.radians(values["angle_deg"])),),
+          (Quantity("angle_deg", 0.0, 30.0, "play as angle of the crank [deg]"),)),
     FaultDefinition("jam", "mechanical", "something is jammed in linkage or gear at a crank angle",
           "a dry friction torque at the crank, in both directions, within width_deg about angle_deg",
           (_set("obstacles.jam_rad", "angle_deg", math.radians(1.0)),

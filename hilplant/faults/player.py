@@ -12,7 +12,7 @@ from hilplant.faults.timing import Course, Inserted, Row
 from hilplant.models.records import PARAMETER_INDEX
 
 #: Groups of elements that are looked at only where their first element, `altered`, is 1.
-_SWITCHED = ("wiring", "relays", "sensors", "heat", "obstacles")
+_SWITCHED = ("wiring", "relays", "sensors", "heat", "obstacles", "linkage")
 
 
 class FaultPlayer:

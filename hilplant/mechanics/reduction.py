@@ -26,12 +26,14 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class SideCurves:
-    """What one blade adds.
+    """What one side adds.
 
     Attributes
     ----------
     rocker
         The rocker's angle [rad].
+    inertia, gravity
+        What arm and blade have of the wiper's inertia [kg m2] and torque of gravity [N m].
     drag
         Torque of the drag at the crank by the square of the air's speed [N m s2/m2], positive against positive crank
         speed.
@@ -43,6 +45,8 @@ class SideCurves:
     """
 
     rocker: Curve
+    inertia: Curve
+    gravity: Curve
     drag: Curve
     lift: Curve
     points: tuple[Curve, ...]
@@ -80,13 +84,15 @@ def reduce(wiper: Wiper, moving: Motion) -> Reduction:
     return Reduction(_inertia(wiper, moving), _gravity(wiper, moving), _damping(wiper, moving), left, right)
 
 
-def _inertia(wiper: Wiper, moving: Motion) -> Curve:
-    weights = np.stack([wiper.masses_kg, wiper.masses_kg, wiper.inertias_kg_m2], axis=-1).ravel()
+def _inertia(wiper: Wiper, moving: Motion, of: Floats | float = 1.0) -> Curve:
+    """Return the inertia; `of` has 1 for each body that counts, 0 for the others."""
+    masses_kg, inertias_kg_m2 = wiper.masses_kg * of, wiper.inertias_kg_m2 * of
+    weights = np.stack([masses_kg, masses_kg, inertias_kg_m2], axis=-1).ravel()
     return Curve(moving.rates**2 @ weights, 2.0 * (moving.rates * moving.accelerations) @ weights)
 
 
-def _gravity(wiper: Wiper, moving: Motion) -> Curve:
-    weights = wiper.masses_kg * wiper.gravity_m_s2
+def _gravity(wiper: Wiper, moving: Motion, of: Floats | float = 1.0) -> Curve:
+    weights = wiper.masses_kg * of * wiper.gravity_m_s2
     return Curve(moving.rates[:, 1::3] @ weights, moving.accelerations[:, 1::3] @ weights)
 
 
@@ -105,7 +111,9 @@ def _side(wiper: Wiper, moving: Motion, side: WiperSide) -> SideCurves:
     points = tuple(
         Curve(rocker.slope * radius, change * radius) for radius in (_radius(wiper, side, pin) for pin in side.friction)
     )
-    return SideCurves(rocker, _drag(wiper, moving, side), _lift(wiper, side, rocker), points)
+    own = np.array([body.name in side.bodies for body in wiper.bodies])
+    carried = _inertia(wiper, moving, own), _gravity(wiper, moving, own)
+    return SideCurves(rocker, *carried, _drag(wiper, moving, side), _lift(wiper, side, rocker), points)
 
 
 def _radius(wiper: Wiper, side: WiperSide, pin: Pin) -> float:

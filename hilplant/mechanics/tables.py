@@ -69,7 +69,9 @@ def channel_names(points: int) -> list[str]:
         DAMPING: "damping of the pivots [N m s/rad]",
     }
     sides = [f"{side} blade point {index + 1} [m/rad]" for side in ("left", "right") for index in range(points)]
-    return [named[channel] for channel in range(POINTS)] + sides
+    carried = ("inertia [kg m2]", "gravity torque [N m]", "drag torque [N m s2/m2]")
+    shares = [f"{side} arm and blade: {what}" for side in ("left", "right") for what in carried]
+    return [named[channel] for channel in range(POINTS)] + sides + shares
 
 
 def _in_order(reduced: Reduction) -> list[Curve]:
@@ -85,7 +87,8 @@ def _in_order(reduced: Reduction) -> list[Curve]:
         RIGHT_LIFT: right.lift,
         DAMPING: reduced.damping,
     }
-    curves = [fixed[channel] for channel in range(POINTS)] + [*left.points, *right.points]
+    shares = [curve for side in (left, right) for curve in (side.inertia, side.gravity, side.drag)]
+    curves = [fixed[channel] for channel in range(POINTS)] + [*left.points, *right.points, *shares]
     if len(curves) != channels(len(left.points)):
         raise ValueError(f"{len(curves)} curves are not the {channels(len(left.points))} channels of a table")
     return curves

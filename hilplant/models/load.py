@@ -4,6 +4,7 @@ from typing import Any
 
 from hilplant.jit import compiled
 from hilplant.models import tables as channel
+from hilplant.models.linkage_faults import without_lost_sides
 from hilplant.models.lookup import value
 from hilplant.models.obstacles import obstructed
 from hilplant.models.polynomial import torque_over_speed
@@ -44,7 +45,10 @@ def resist(crank: Crank, parameters: Parameters, inputs: Inputs) -> Resistance:
     """
     load = parameters.load
     if load.model == REDUCED or load.model == NETWORK:  # noqa: PLR1714
-        return reduced(crank, load, inputs)
+        whole = reduced(crank, load, inputs)
+        if parameters.linkage.altered > 0.5:
+            whole = without_lost_sides(whole, crank, parameters, inputs)
+        return whole
     return by_speed(crank.angle_rad, crank.speed_rad_s, load, inputs, parameters.networks)
 
 

@@ -1,4 +1,4 @@
-"""Records of what stands in the wiper's way, declared where they stand.
+"""Records of what stands in the wiper's way and of what is loose or broken, declared where they stand.
 
 A group with `altered` 0 is not looked at: nothing of it is computed, and its states stay as they are.
 """
@@ -36,3 +36,27 @@ class IceState(NamedTuple):
 
     left_rad: Annotated[float, quantity("rad", "turned by the left arm", watched=False)] = 0.0
     right_rad: Annotated[float, quantity("rad", "turned by the right arm", watched=False)] = 0.0
+
+
+class LinkageCondition(NamedTuple):
+    """What is loose or broken between crank and blades; see :mod:`hilplant.models.linkage_faults`."""
+
+    altered: Annotated[float, flag("1 where any of the others is not as declared here")] = 0.0
+    left: Annotated[float, quantity("", "left arm: 0 whole, 1 lost with its blade, 2 its link is broken")] = 0.0
+    right: Annotated[float, quantity("", "right arm: 0 whole, 1 lost with its blade, 2 its link is broken")] = 0.0
+    backlash_rad: Annotated[float, quantity("rad", "play between crank and linkage, as angle of the crank")] = 0.0
+
+
+class LinkageState(NamedTuple):
+    """Where rockers stand whose link is broken."""
+
+    left_rad: Annotated[float, quantity("rad", "angle of the left rocker since its link broke; 0: it is whole")] = 0.0
+    right_rad: Annotated[float, quantity("rad", "the same of the right one")] = 0.0
+
+
+class PlayState(NamedTuple):
+    """Where the linkage is in its play."""
+
+    ahead_rad: Annotated[float, quantity("rad", "how far the linkage is ahead of the crank, 0 to the backlash")] = 0.0
+    speed_rad_s: Annotated[float, quantity("rad/s", "speed of the linkage as of its crank, while apart")] = 0.0
+    apart: Annotated[float, flag("1 while crank and linkage do not touch", watched=False)] = 0.0

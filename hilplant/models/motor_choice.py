@@ -77,8 +77,8 @@ def by_network(
 @compiled
 def beyond_training(parameters: Parameters) -> bool:
     """Return whether the plant has what no network knows: ideal wires, a cold motor, a free way."""
-    altered = parameters.wiring.altered > 0.5 or parameters.heat.altered > 0.5 or parameters.obstacles.altered > 0.5
-    return bool(altered)
+    electrical = parameters.wiring.altered > 0.5 or parameters.heat.altered > 0.5
+    return bool(electrical or parameters.obstacles.altered > 0.5 or parameters.linkage.altered > 0.5)
 
 
 @compiled

@@ -4,26 +4,25 @@ from typing import Any, NamedTuple
 
 from hilplant.jit import compiled
 from hilplant.models.armature import ArmatureMotion
+from hilplant.models.backlash import linkage_crank, move_all
 from hilplant.models.circuit import connect, next_phase
 from hilplant.models.guard import admit, hold_if_wrong
-from hilplant.models.heat import heated, losses, warmed
+from hilplant.models.linkage_faults import LINK_BROKEN, broken_at
 from hilplant.models.load import NETWORK, resist_as
-from hilplant.models.lookup import derivative, find, value, within_turn
-from hilplant.models.mechanical_records import IceState, Obstacles
-from hilplant.models.motor_choice import move
-from hilplant.models.obstacles import ice_after, with_ice_left
+from hilplant.models.lookup import derivative, value, within_turn
 from hilplant.models.park_switch import contact_now
-from hilplant.models.records import Motor, Parameters, State
+from hilplant.models.records import Parameters, State
 from hilplant.models.reduced import left_pressing, right_pressing
 from hilplant.models.relays import move_relays
 from hilplant.models.resistance import Crank, Resistance
-from hilplant.models.row import changed, unpack, write
+from hilplant.models.row import unpack, write
 from hilplant.models.sensors import read_current, stick_contact
 from hilplant.models.shaft import Train, load_torque
-from hilplant.models.slow_records import HeatState
+from hilplant.models.slow_states import Reached, as_it_is, slow_after
 from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
 from hilplant.models.torque_network import NETWORK as BY_NETWORK
 from hilplant.models.torque_network import NO_TANGENT, PHYSICAL, active_load_model, network_tangent
+from hilplant.models.water import rain_signal, wetted
 from hilplant.signals import Inputs, Outputs
 
 
@@ -42,34 +41,36 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
         Array [knots + 1, channels, 2] over the crank angle; see :mod:`hilplant.models.tables`.
 
     """
-    # 1 what is not finite stays outside; the motor is as warm as it is
+    # 1 what is not finite stays outside; motor, blades and screen are as the slow states have made them
     state, inputs = admit(state, inputs)
-    actual = as_it_is(parameters, state)
-    angle, speed = state.crank_angle_rad, state.motor_speed_rad_s / actual.motor.gear_ratio
+    told, parameters = parameters, as_it_is(parameters, state)
+    inputs = wetted(inputs, parameters, state.water)
+    angle, speed = state.crank_angle_rad, state.motor_speed_rad_s / parameters.motor.gear_ratio
     # 2 park switch and relays
-    contact = contact_now(angle, state.park_contact, state.bounce_left, actual.park_switch)
-    contact, moved = stick_contact(contact, actual.sensors), move_relays(inputs, state, actual)
-    phase = next_phase(moved.inputs, actual.park_switch, contact, state.park_phase, angle)
+    contact = contact_now(angle, state.park_contact, state.bounce_left, parameters.park_switch)
+    contact, moved = stick_contact(contact, parameters.sensors), move_relays(inputs, state, parameters)
+    phase = next_phase(moved.inputs, parameters.park_switch, contact, state.park_phase, angle)
     # 3 supply, wires and park circuit
-    connection = connect(moved.inputs, actual, contact, phase, state)
+    connection = connect(moved.inputs, parameters, contact, phase, state)
     # 4 kinematics and load at this instant
     motion = ArmatureMotion(state.current_a if connection.closed > 0.5 else 0.0, state.motor_speed_rad_s, 0.0)
     load_mode, tangent = PHYSICAL, NO_TANGENT
-    if actual.load.model == NETWORK:
-        load_mode = active_load_model(actual, speed, inputs, state.load_mode)
+    if parameters.load.model == NETWORK:
+        load_mode = active_load_model(parameters, speed, inputs, state.load_mode)
     if load_mode == BY_NETWORK:
-        tangent = network_tangent(actual.networks, angle, speed, inputs.screen == 1.0)
-    train = Train(connection, tables, inputs, actual, load_mode, tangent)
-    crank = Crank(tables, find(tables, angle), angle, speed)
-    load = resist_as(load_mode, tangent, crank, actual, inputs)
+        tangent = network_tangent(parameters.networks, angle, speed, inputs.screen == 1.0)
+    train = Train(connection, tables, inputs, parameters, load_mode, tangent)
+    crank = linkage_crank(speed, state, parameters, tables)
+    load = resist_as(load_mode, tangent, crank, parameters, inputs)
     # 5 motor and load together to the next tick
-    after, memory = move(motion, angle, load, train, state)
-    seen = read_current(motion.current, state.noise, actual.sensors)
-    shown = Seen(seen.current_a, contact.shown, state.guard, memory.mode, state.heat)
+    after, memory, play = move_all(motion, crank, load, train, state)
+    seen = read_current(motion.current, state.noise, parameters.sensors)
+    shown = Seen(seen.current_a, contact.shown, memory.mode, state)
     outputs = measured(motion, crank, load, shown, train)
     # 6 slow states
-    reached = within_turn(angle + after.turned / actual.motor.gear_ratio)
-    heat, ice = heat_after(motion, after, state.heat, train), ice_at(reached, state.ice, crank, parameters)
+    reached = within_turn(angle + after.turned / parameters.motor.gear_ratio)
+    there = Reached(motion, after, within_turn(reached + play.ahead_rad))
+    slow = slow_after(crank, there, train, state, told)
     # 7 guard
     following = State(
         current_a=without_denormals(after.current),
@@ -84,8 +85,12 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
         relay_on=moved.on,
         relay_fast=moved.fast,
         noise=seen.noise,
-        heat=heat,
-        ice=ice,
+        heat=slow.heat,
+        ice=slow.ice,
+        linkage=slow.linkage,
+        play=play,
+        wear=slow.wear,
+        water=slow.water,
     )
     return hold_if_wrong(following, angle), outputs
 
@@ -95,51 +100,8 @@ class Seen(NamedTuple):
 
     current_a: float
     park_contact: float
-    guard: float
     motor_mode: float
-    heat: HeatState
-
-
-class NewObstacles(NamedTuple):
-    """The obstacles among the parameters."""
-
-    obstacles: Obstacles
-
-
-class NewMotor(NamedTuple):
-    """The motor among the parameters."""
-
-    motor: Motor
-
-
-@compiled
-def as_it_is(parameters: Parameters, state: State) -> Parameters:
-    """Return the parameters as the slow states have made them."""
-    if parameters.obstacles.altered > 0.5:
-        parameters = changed(parameters, NewObstacles(with_ice_left(parameters.obstacles, state.ice)))
-    if parameters.heat.altered < 0.5:
-        return parameters
-    return changed(parameters, NewMotor(heated(parameters.motor, parameters.heat, state.heat)))
-
-
-@compiled
-def ice_at(reached_rad: float, now: IceState, before: Crank, parameters: Parameters) -> IceState:
-    """Return how far the ice has been left once the crank has reached an angle; as it is where there is no obstacle."""
-    if parameters.obstacles.altered < 0.5:
-        return IceState(0.0, 0.0)
-    tables = before.tables
-    after = Crank(tables, find(tables, reached_rad), reached_rad, before.speed_rad_s)
-    return ice_after(now, parameters.obstacles, before, after)
-
-
-@compiled
-def heat_after(before: ArmatureMotion, after: ArmatureMotion, now: HeatState, train: Train) -> HeatState:
-    """Return temperatures and thermal switch a tick later; as they are where heat is not modelled."""
-    parameters = train.parameters
-    if parameters.heat.altered < 0.5:
-        return now
-    lost = losses(before, after, train.connection, parameters, train.inputs.ambient_temperature_c)
-    return warmed(now, lost, parameters.heat, parameters.step_s)
+    state: State
 
 
 @compiled
@@ -148,25 +110,33 @@ def measured(motion: ArmatureMotion, crank: Crank, load: Resistance, seen: Seen,
     inputs, parameters, connection = train.inputs, train.parameters, train.connection
     tables, place = crank.tables, crank.place
     left_rocker, right_rocker = value(tables, place, LEFT_ROCKER), value(tables, place, RIGHT_ROCKER)
+    left_m_s = parameters.left_arm.length_m * derivative(tables, place, LEFT_ROCKER) * crank.speed_rad_s
+    right_m_s = parameters.right_arm.length_m * derivative(tables, place, RIGHT_ROCKER) * crank.speed_rad_s
+    if parameters.linkage.altered > 0.5:
+        stands = broken_at(crank, parameters.linkage, seen.state.linkage)
+        if parameters.linkage.left == LINK_BROKEN:
+            left_rocker, left_m_s = stands.left_rad, 0.0
+        if parameters.linkage.right == LINK_BROKEN:
+            right_rocker, right_m_s = stands.right_rad, 0.0
     return Outputs(
         supply_v=connection.supply_v,
         supply_current_a=connection.supply_current_a,
         terminal_v=connection.terminal_v,
         current_a=motion.current,
         motor_speed_rad_s=motion.speed,
-        crank_speed_rad_s=crank.speed_rad_s,
-        crank_angle_rad=crank.angle_rad,
+        crank_speed_rad_s=motion.speed / parameters.motor.gear_ratio,
+        crank_angle_rad=seen.state.crank_angle_rad,
         load_torque_n_m=load_torque(motion, load, train),
         park_contact=seen.park_contact,
         left_arm_rad=left_rocker + parameters.left_arm.offset_rad,
         right_arm_rad=right_rocker + parameters.right_arm.offset_rad,
         left_rocker_rad=left_rocker,
         right_rocker_rad=right_rocker,
-        left_blade_m_s=parameters.left_arm.length_m * derivative(tables, place, LEFT_ROCKER) * crank.speed_rad_s,
-        right_blade_m_s=parameters.right_arm.length_m * derivative(tables, place, RIGHT_ROCKER) * crank.speed_rad_s,
+        left_blade_m_s=left_m_s,
+        right_blade_m_s=right_m_s,
         relay_on=inputs.relay_on,
         relay_fast=inputs.relay_fast,
-        guard=seen.guard,
+        guard=seen.state.guard,
         terminal_53_v=connection.terminal_53_v,
         terminal_53b_v=connection.terminal_53b_v,
         terminal_53e_v=connection.terminal_53e_v,
@@ -176,8 +146,11 @@ def measured(motion: ArmatureMotion, crank: Crank, load: Resistance, seen: Seen,
         load_mode=train.load_mode,
         motor_mode=seen.motor_mode,
         measured_current_a=seen.current_a,
-        winding_temperature_c=seen.heat.winding_c,
-        thermal_switch=seen.heat.opened,
+        winding_temperature_c=seen.state.heat.winding_c,
+        thermal_switch=seen.state.heat.opened,
+        wetness=inputs.screen,
+        water_film_mm=seen.state.water.film_mm,
+        rain_sensor=rain_signal(seen.state.water, parameters.water),
     )
 
 

@@ -5,8 +5,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from hilplant.declaration import choice, declared, flag, index_of, quantity
-from hilplant.models.mechanical_records import IceState, Obstacles
-from hilplant.models.slow_records import Heat, HeatState
+from hilplant.models.mechanical_records import IceState, LinkageCondition, LinkageState, Obstacles, PlayState
+from hilplant.models.slow_records import Heat, HeatState, Water, WaterState, Wear, WearState
 from hilplant.signals import ACTIVE_MODELS
 
 
@@ -176,6 +176,9 @@ class Parameters(NamedTuple):
     sensors: Sensors = Sensors()
     heat: Heat = Heat()
     obstacles: Obstacles = Obstacles()
+    linkage: LinkageCondition = LinkageCondition()
+    wear: Wear = Wear()
+    water: Water = Water()
     networks: Any = NO_NETWORKS
 
 
@@ -231,6 +234,10 @@ class State(NamedTuple):
     noise: Annotated[float, quantity("", "where the noise of the sensors has come to", watched=False)] = 1.0
     heat: HeatState = HeatState()
     ice: IceState = IceState()
+    linkage: LinkageState = LinkageState()
+    play: PlayState = PlayState()
+    wear: WearState = WearState()
+    water: WaterState = WaterState()
 
 
 #: Where in its packed row each element is, by its name: `load.left_blade.wear` of the parameters, `memory.brush` of

@@ -14,7 +14,10 @@ RIGHT_LIFT = 6  #: the same of the right blade
 DAMPING = 7  #: viscous damping of the pivots seen at the crank [N m s/rad]
 POINTS = 8  #: first of the left blade's points, then those of the right: way by crank angle [m/rad], signed
 
+#: Behind the points: what arm and blade of one side have of INERTIA, GRAVITY and DRAG; left, then right.
+SIDE_CHANNELS = 3
+
 
 def channels(points: int) -> int:
     """Return the number of channels when friction acts at `points` points of each blade."""
-    return POINTS + 2 * points
+    return POINTS + 2 * points + 2 * SIDE_CHANNELS

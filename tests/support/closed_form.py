@@ -77,6 +77,10 @@ class ClosedFormWiper:
             table[channel.LEFT_LIFT + k, 0] = pressure * side.lift_m2
             first = channel.POINTS + k * self.points
             table[first : first + self.points] = np.outer(self.radii(side), way)
+            share = channel.POINTS + 2 * self.points + k * channel.SIDE_CHANNELS
+            table[share] = side.inertia_kg_m2 * squared
+            table[share + 1] = side.weight_n_m * np.array(pull)
+            table[share + 2] = -pressure * side.drag_m2 * side.length_m * way
         return table
 
     def radii(self, side: Side) -> Floats:

@@ -1,0 +1,94 @@
+"""All that changes slowly: what it makes of the parameters in a tick, and how it goes on to the next one."""
+
+from typing import NamedTuple
+
+from hilplant.jit import compiled
+from hilplant.models.armature import ArmatureMotion
+from hilplant.models.heat import heated, losses, warmed
+from hilplant.models.linkage_faults import broken_at, without_lost_blades
+from hilplant.models.lookup import find
+from hilplant.models.mechanical_records import IceState, LinkageState, Obstacles
+from hilplant.models.obstacles import ice_after, with_ice_left
+from hilplant.models.records import Load, Motor, Parameters, ParkSwitch, State
+from hilplant.models.resistance import Crank
+from hilplant.models.row import changed
+from hilplant.models.shaft import Train
+from hilplant.models.slow_records import HeatState, WaterState, WearState
+from hilplant.models.water import film_after
+from hilplant.models.wear import worn_load, worn_motor, worn_switch
+from hilplant.units import TURN_RAD
+
+
+class Slowly(NamedTuple):
+    """What of the parameters changes slowly."""
+
+    motor: Motor
+    park_switch: ParkSwitch
+    load: Load
+    obstacles: Obstacles
+
+
+class SlowStates(NamedTuple):
+    """All slow states."""
+
+    heat: HeatState
+    ice: IceState
+    linkage: LinkageState
+    wear: WearState
+    water: WaterState
+
+
+class Reached(NamedTuple):
+    """Where a tick has led: the motor's motion at both ends, and where the crank of the linkage is then [rad]."""
+
+    before: ArmatureMotion
+    after: ArmatureMotion
+    linkage_rad: float
+
+
+@compiled
+def as_it_is(parameters: Parameters, state: State) -> Parameters:
+    """Return the parameters as the slow states have made them."""
+    altered = parameters.heat.altered + parameters.obstacles.altered + parameters.linkage.altered
+    if altered + parameters.wear.altered == 0.0:
+        return parameters
+    motor, load, obstacles = parameters.motor, parameters.load, parameters.obstacles
+    switch = parameters.park_switch
+    if parameters.wear.altered > 0.5:
+        motor, load = worn_motor(motor, parameters.wear, state.wear), worn_load(load, parameters.wear, state.wear)
+        switch = worn_switch(switch, parameters.wear, state.wear)
+    if parameters.heat.altered > 0.5:
+        motor = heated(motor, parameters.heat, state.heat)
+    if parameters.linkage.altered > 0.5:
+        load = without_lost_blades(load, parameters.linkage)
+    if parameters.obstacles.altered > 0.5:
+        obstacles = with_ice_left(obstacles, state.ice)
+    return changed(parameters, Slowly(motor, switch, load, obstacles))
+
+
+@compiled
+def slow_after(crank: Crank, reached: Reached, train: Train, state: State, told: Parameters) -> SlowStates:
+    """Return the slow states a tick later; those that are not modelled stay as they are.
+
+    `train` has the parameters as the slow states had made them in the tick, `told` as they are without that.
+    """
+    parameters, inputs = train.parameters, train.inputs
+    heat, ice, linkage, wear, water = state.heat, state.ice, state.linkage, state.wear, state.water
+    turned_rad = abs(reached.after.turned - reached.before.turned) / parameters.motor.gear_ratio
+    if parameters.heat.altered > 0.5:
+        lost = losses(reached.before, reached.after, train.connection, parameters, inputs.ambient_temperature_c)
+        heat = warmed(heat, lost, parameters.heat, parameters.step_s)
+    if parameters.obstacles.altered > 0.5:
+        there = Crank(crank.tables, find(crank.tables, reached.linkage_rad), reached.linkage_rad, crank.speed_rad_s)
+        ice = ice_after(ice, told.obstacles, crank, there)
+    else:
+        ice = IceState(0.0, 0.0)
+    if parameters.linkage.altered > 0.5:
+        linkage = broken_at(crank, parameters.linkage, linkage)
+    else:
+        linkage = LinkageState(0.0, 0.0)
+    if parameters.wear.altered > 0.5:
+        wear = WearState(wear.wipes + turned_rad / TURN_RAD)
+    if parameters.water.altered > 0.5:
+        water = film_after(water, inputs, parameters, turned_rad)
+    return SlowStates(heat, ice, linkage, wear, water)
