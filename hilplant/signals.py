@@ -177,6 +177,7 @@ class StalkInputs(NamedTuple):
     intermittent_switch: Annotated[float, real("", 1.0, 6.0, "which of the six pauses")] = 1.0
     flick_wipe: Annotated[float, flag("button for one fast wipe")] = 0.0
     wash: Annotated[float, flag("button for washer and wipes")] = 0.0
+    automatic: Annotated[float, flag("the rain sensor decides, in the place of the position")] = 0.0
 
 
 class EcuStatus(NamedTuple):

@@ -8,6 +8,9 @@ from hilplant.bench.bus_description import EcuStatusMessageEntry, StalkMessageEn
 from hilplant.checked_yaml.checked import Checked, NotNegative, Positive, wrong
 
 SixPauses = Annotated[tuple[Positive, ...], Field(strict=False, min_length=6, max_length=6)]
+EightLevels = Annotated[
+    tuple[Annotated[float, Field(gt=0, le=1)], ...], Field(strict=False, min_length=8, max_length=8)
+]
 Count = Annotated[int, Field(ge=1)]
 
 
@@ -29,6 +32,10 @@ class ControllerSettings(Checked):
     )
     stall_current_a: Positive = Field(default=10.0, description="current from which the motor counts as stalled")
     stall_s: Positive = Field(default=0.5, description="how long that current must flow")
+    warm_stall_current_a: Positive = Field(
+        default=5.0, description="current from which a motor counts as stalled that draws it without a break"
+    )
+    warm_stall_s: Positive = Field(default=4.0, description="how long that current must flow without a break")
     brown_out_v: NotNegative = Field(default=6.0, description="supply voltage below which the relays go off")
     resume_v: NotNegative = Field(default=8.0, description="supply voltage from which it goes on")
     resume_s: NotNegative = Field(default=0.5, description="how long the supply must stay up before")
@@ -39,8 +46,16 @@ class ControllerSettings(Checked):
     )
     rests_open: bool = Field(default=False, description="whether the parked wiper lies where the park contact is open")
 
+    rain_levels: EightLevels = Field(
+        default=(0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8),
+        description="signals of the rain sensor from which on automatic takes the six pauses, slow and fast",
+    )
+    rain_hold_s: NotNegative = Field(default=5.0, description="how long less rain is seen before a stage less is taken")
+
     @model_validator(mode="after")
     def _thresholds_in_order(self) -> Self:
+        if list(self.rain_levels) != sorted(set(self.rain_levels)):
+            raise wrong("rain_levels", text="rain_levels must rise")
         if self.resume_v < self.brown_out_v:
             raise wrong("resume_v", text=f"resume_v must be at least brown_out_v, which is {self.brown_out_v:g}")
         if self.leave_timeout_s > self.turn_timeout_s:

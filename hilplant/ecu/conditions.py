@@ -60,7 +60,13 @@ WANTED_OR_AWAY = Condition(
     lambda view: view.senses.supply_low and (view.stalk.demands or AWAY.holds(view)),
 )
 
-STALLED = Condition("current high", lambda view: view.now_s - view.senses.high_s >= view.settings.stall_s)
+STALLED = Condition(
+    "current high",
+    lambda view: (
+        view.now_s - view.senses.high_s >= view.settings.stall_s
+        or view.now_s - view.senses.warm_s >= view.settings.warm_stall_s
+    ),
+)
 BOUNCES = Condition("contact bounces", lambda view: view.senses.edges >= view.settings.bounce_edges)
 NEVER_OPENS = Condition(
     "contact does not open",

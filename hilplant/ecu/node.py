@@ -15,11 +15,13 @@ from hilplant.runtime.clock import Clock
 from hilplant.signals import ECU_FAULTS, ECU_RX, ECU_RX_INDEX, ECU_STATES, ECU_TX, ECU_TX_INDEX
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
-_PARK, _CURRENT, _SUPPLY = (ECU_RX_INDEX[name] for name in ("park_contact", "current_a", "supply_v"))
-_MASTER, _INTERVAL, _FLICK, _WASH = (
-    ECU_RX_INDEX[name] for name in ("master_input", "intermittent_switch", "flick_wipe", "wash")
+_PARK, _CURRENT, _SUPPLY, _RAIN = (
+    ECU_RX_INDEX[name] for name in ("park_contact", "current_a", "supply_v", "rain_sensor")
 )
-_RELAYS = (ECU_TX_INDEX["relay_on"], ECU_TX_INDEX["relay_fast"])
+_MASTER, _INTERVAL, _FLICK, _WASH, _AUTOMATIC = (
+    ECU_RX_INDEX[name] for name in ("master_input", "intermittent_switch", "flick_wipe", "wash", "automatic")
+)
+_COMMANDS = tuple(ECU_TX_INDEX[name] for name in ("relay_on", "relay_fast", "washer_pump"))
 _TOLD = tuple(ECU_TX_INDEX[name] for name in ("ecu_state", "ecu_fault", "ecu_tries"))
 
 
@@ -37,10 +39,11 @@ class EcuReport(NamedTuple):
 class EcuNode:
     """A CAN node with the relay controller in it.
 
-    Of the bench's messages it takes those with the park contact, the motor current or the supply voltage, and
-    sends those that carry a relay; supply and environment stay with those who command them. The stalk and the
-    ECU's status are messages of its own. While the park contact is unknown the relays are off. `report` is called
-    at each poll; `counts` are the node's, by ``signals.STATUS``.
+    Of the bench's messages it takes those with the park contact, the motor current, the supply voltage or the rain
+    sensor, and sends those that carry a relay or the washer pump, which runs while the driver washes; supply and
+    environment stay with those who command them. The stalk and the ECU's status are messages of its own. While the park
+    contact is unknown the relays are off. `report` is called at each poll; `counts` are the node's, by
+    ``signals.STATUS``.
     """
 
     def __init__(self, side: EcuSide, transport: Transport, settings: RelaySettings) -> None:
@@ -49,7 +52,7 @@ class EcuNode:
         self.report: Callable[[EcuReport], None] | None = None
         self._settings = settings
         self._said = [signal.default for signal in ECU_TX]
-        heard = [*_that_carry((_PARK, _CURRENT, _SUPPLY), side.receive), *side.stalk]
+        heard = [*_that_carry((_PARK, _CURRENT, _SUPPLY, _RAIN), side.receive), *side.stalk]
         sent = [*_commands(side.send), *side.status]
         self._node = Node(heard, sent, transport, LinkSettings(), [math.nan] * len(ECU_RX))
 
@@ -69,11 +72,11 @@ class EcuNode:
         stalk = self._heard_stalk() if heard_once and not lost else stalk
         contact = self._known(_PARK)
         closed = None if math.isnan(contact) else contact > 0.5
-        inputs = EcuInputs(stalk, closed, self._known(_CURRENT), self._known(_SUPPLY))
+        inputs = EcuInputs(stalk, closed, self._known(_CURRENT), self._known(_SUPPLY), self._known(_RAIN))
         now_s = now_ns / SECOND_NS
         self.state, relays, fault = advance(self.state, inputs, now_s, self._settings)
         fault = Fault.STALK_LOST if lost and fault is Fault.NONE else fault
-        self._say(relays, fault)
+        self._say(relays, fault, stalk.wash)
         self._node.send(now_ns, self._said)
         if self.report is not None:
             self.report(EcuReport(now_s, stalk, self.state, relays, fault, closed is not None))
@@ -95,11 +98,12 @@ class EcuNode:
     def _heard_stalk(self) -> Stalk:
         values = self._node.values
         interval = 1 if math.isnan(values[_INTERVAL]) else round(values[_INTERVAL])
-        return Stalk(Master(round(values[_MASTER])), interval, values[_FLICK] > 0.5, values[_WASH] > 0.5)
+        flick, wash, automatic = (values[index] > 0.5 for index in (_FLICK, _WASH, _AUTOMATIC))
+        return Stalk(Master(round(values[_MASTER])), interval, flick, wash, automatic)
 
-    def _say(self, relays: RelayCommand, fault: Fault) -> None:
+    def _say(self, relays: RelayCommand, fault: Fault, washes: bool = False) -> None:
         told = (_STATE_NUMBERS[self.state.phase.value], _FAULT_NUMBERS[fault.value], float(self.state.tries))
-        for index, value in zip((*_RELAYS, *_TOLD), (*relays, *told), strict=True):
+        for index, value in zip((*_COMMANDS, *_TOLD), (*relays, washes, *told), strict=True):
             self._said[index] = float(value)
 
 
@@ -112,7 +116,7 @@ def _that_carry(targets: Sequence[int], messages: Sequence[ReceivedMessage]) -> 
 
 
 def _commands(messages: Sequence[SentMessage]) -> list[SentMessage]:
-    return [message for message in messages if set(_RELAYS) & set(message.sources)]
+    return [message for message in messages if set(_COMMANDS) & set(message.sources)]
 
 
 def run_ecu(

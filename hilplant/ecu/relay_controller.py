@@ -6,6 +6,7 @@ the table in :mod:`hilplant.ecu.chart`.
 
 from typing import NamedTuple
 
+from hilplant.ecu.automatic import RainStage, choose_stage, demanded
 from hilplant.ecu.chart import EXITS, RESTING, SPEEDS, WIPING, Phase, Transition
 from hilplant.ecu.conditions import View
 from hilplant.ecu.sensing import Senses, sense
@@ -22,7 +23,7 @@ class ControllerState(NamedTuple):
     how long it had been driven when silence or the supply held it up: that counts on when it is taken up again, or a
     blocked wiper behind a flickering message would be driven for ever. `fast` is the speed at which it drives.
     `tries` counts what went wrong since the last sound turn or rest in park. `leaving` says that it was started
-    outside the park window, where it rests, and has not passed the window yet.
+    outside the park window, where it rests, and has not passed the window yet. `rain` is the stage of `automatic`.
     """
 
     phase: Phase = Phase.OFF
@@ -36,6 +37,7 @@ class ControllerState(NamedTuple):
     latched_demand: bool = False
     leaving: bool = False
     senses: Senses = Senses()
+    rain: RainStage = RainStage()
 
 
 def advance(
@@ -54,6 +56,8 @@ def take(
     state: ControllerState, inputs: EcuInputs, now_s: float, settings: RelaySettings
 ) -> tuple[ControllerState, Transition | None]:
     """Do what :func:`advance` does, and return the transition that was taken, None where the phase stays."""
+    rain = choose_stage(state.rain, inputs.rain, now_s, settings)
+    state, inputs = state._replace(rain=rain), inputs._replace(stalk=demanded(inputs.stalk, rain, inputs.rain))
     senses = sense(state.senses, inputs, now_s, settings)
     if senses.arrived and state.leaving:
         senses, state = senses._replace(arrived=False), state._replace(leaving=False)

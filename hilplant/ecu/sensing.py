@@ -15,7 +15,8 @@ class Senses(NamedTuple):
     `contact` is the park contact as last seen, None while unknown. `opened_s` is when it opened and `closed_s`
     when it closed, infinite while it is in the other position. `away` says that it has been open for longer
     than a bounce, `arrived` that it closed just now after that. `edges` counts its changes since `window_s`.
-    `high_s` is since when the current is high, `good_s` since when the supply is good again.
+    `high_s` is since when the current is that of a stall, `warm_s` since when that of a warm motor's stall, `good_s`
+    since when the supply is good again.
     """
 
     contact: bool | None = None
@@ -26,6 +27,7 @@ class Senses(NamedTuple):
     edges: int = 0
     window_s: float = 0.0
     high_s: float = math.inf
+    warm_s: float = math.inf
     supply_low: bool = False
     good_s: float = math.inf
 
@@ -39,8 +41,11 @@ def sense(before: Senses, inputs: EcuInputs, now_s: float, settings: RelaySettin
     """
     senses = _watch_contact(before, inputs.park_contact, now_s, settings)
     senses = _count_edges(senses, before.contact, now_s, settings)
-    high = abs(inputs.current_a) > settings.stall_current_a  # false for nan: unknown is not high
-    senses = senses._replace(high_s=min(senses.high_s, now_s) if high else math.inf)
+    current_a = abs(inputs.current_a)  # nan is above nothing: unknown is not high
+    senses = senses._replace(
+        high_s=min(senses.high_s, now_s) if current_a > settings.stall_current_a else math.inf,
+        warm_s=min(senses.warm_s, now_s) if current_a > settings.warm_stall_current_a else math.inf,
+    )
     return _watch_supply(senses, inputs.supply_v, now_s, settings)
 
 

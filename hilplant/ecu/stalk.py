@@ -15,7 +15,8 @@ StalkSource = Callable[[float], Stalk]
 
 #: How long [s] a button is pressed: long enough to be seen in messages of 100 ms.
 PRESSES_S = {"flick": 0.3, "wash": 1.0}
-WORDS = (*(position.name.lower() for position in Master), *PRESSES_S)
+AUTOMATIC = "automatic"
+WORDS = (*(position.name.lower() for position in Master), *PRESSES_S, AUTOMATIC)
 _WRITTEN = re.compile(r"([a-z]*)([0-9]*)")
 
 
@@ -29,6 +30,7 @@ class Move(NamedTuple):
     master: Master | None = None
     interval: int | None = None
     press: str | None = None
+    automatic: bool = False
 
 
 class StalkTurn(NamedTuple):
@@ -82,6 +84,8 @@ def move_named(text: str) -> Move | None:
         return None
     if word in PRESSES_S:
         return Move(press=word)
+    if word == AUTOMATIC:
+        return Move(automatic=True)
     return Move(Master[word.upper()] if word else None, interval)
 
 
@@ -101,8 +105,11 @@ def moved(stalk: Stalk, move: Move, ago_s: float) -> Stalk:
         pressed = ago_s < PRESSES_S[move.press]
         flick, wash = pressed and move.press == "flick", pressed and move.press == "wash"
         return stalk._replace(flick=stalk.flick or flick, wash=stalk.wash or wash)
-    master = stalk.master if move.master is None else move.master
-    return stalk._replace(master=master, interval=move.interval or stalk.interval)
+    if move.automatic:
+        return stalk._replace(master=Master.INTERMITTENT, automatic=True)
+    if move.master is not None:
+        stalk = stalk._replace(master=move.master, automatic=False)
+    return stalk._replace(interval=move.interval or stalk.interval)
 
 
 class TypedStalk:
@@ -142,6 +149,6 @@ class TypedStalk:
 
 def stalk_words(stalk: Stalk) -> str:
     """Say in a few words where the stalk is."""
-    words = stalk.master.name.lower()
-    words += f" {stalk.interval}" if stalk.master is Master.INTERMITTENT else ""
+    words = AUTOMATIC if stalk.automatic else stalk.master.name.lower()
+    words += f" {stalk.interval}" if stalk.master is Master.INTERMITTENT and not stalk.automatic else ""
     return words + (" + flick" if stalk.flick else "") + (" + wash" if stalk.wash else "")

@@ -20,12 +20,14 @@ class Stalk(NamedTuple):
     """What the driver's hand does.
 
     `interval` is `Intermittent_Switch`, 1 to 6; `flick` and `wash` are true while they are pressed.
+    `automatic` says that the rain sensor decides in the place of `master` and `interval`.
     """
 
     master: Master = Master.OFF
     interval: int = 1
     flick: bool = False
     wash: bool = False
+    automatic: bool = False
 
     @property
     def demands(self) -> bool:
@@ -40,6 +42,7 @@ class EcuInputs(NamedTuple):
     park_contact: bool | None
     current_a: float = math.nan
     supply_v: float = math.nan
+    rain: float = math.nan
 
 
 class RelayCommand(NamedTuple):
@@ -81,6 +84,8 @@ class RelaySettings(NamedTuple):
     bounce_window_s: float = 1.0
     stall_current_a: float = 10.0
     stall_s: float = 0.5
+    warm_stall_current_a: float = 5.0
+    warm_stall_s: float = 4.0
     brown_out_v: float = 6.0
     resume_v: float = 8.0
     resume_s: float = 0.5
@@ -88,3 +93,5 @@ class RelaySettings(NamedTuple):
     retry_pause_s: float = 2.0
     settle_s: float = 0.5
     rests_open: bool = False
+    rain_levels: tuple[float, ...] = (0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.6, 0.8)
+    rain_hold_s: float = 5.0

@@ -50,7 +50,7 @@ def test_what_is_left_is_a_wiper_with_one_arm(side: str, broken: float, scenario
     assert max(errors_percent(outputs, truth)) < 0.05
     assert max(errors_percent(run_step(plant(LinkageCondition()), WIPER.tables(), rows), truth)) > 1.0
     assert (shown(outputs, f"{side}_force_n") == 0.0).all()
-    assert (np.ptp(shown(outputs, f"{side}_arm_rad")) == 0.0) is (broken == 2.0)
+    assert bool(np.ptp(shown(outputs, f"{side}_arm_rad")) == 0.0) is (broken == 2.0)
 
 
 def test_an_arm_whose_link_breaks_is_shown_where_it_was_and_back_on_its_rocker_when_it_is_whole() -> None:

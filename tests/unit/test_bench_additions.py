@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from hilplant.bench import check_bench, load_bench
-from hilplant.models.mechanical_records import Obstacles, SideObstacles
+from hilplant.models.mechanical_records import LinkageCondition, Obstacles, SideObstacles
 from hilplant.models.plant import simulate_rows
 from hilplant.models.records import STATE_INDEX, Parameters, Relays, RelayTiming, Wiring
-from hilplant.models.slow_records import Heat
+from hilplant.models.slow_records import Heat, Water, Wear
 from hilplant.signals import ACTIVE_MODELS, INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 
 HEAD = "extends: default.yaml\nname: x\n"
@@ -20,10 +20,18 @@ def built(plant: str) -> Parameters:
 
 def test_an_ideal_plant_is_not_altered() -> None:
     ideal = "supply: {resistance_ohm: 0}, wires: {}, relays: {relay_on: {bounce_ms: 0}}, obstacles: {slip_deg: 3}"
+    ideal += ", backlash: {angle_deg: 0}"
     for plant in ("{}", f"{{{ideal}}}"):
         parameters = built(plant)
         assert (parameters.wiring, parameters.relays, parameters.heat) == (Wiring(), Relays(), Heat())
-        assert parameters.obstacles == Obstacles()
+        assert (parameters.obstacles, parameters.linkage) == (Obstacles(), LinkageCondition())
+        assert (parameters.wear, parameters.water) == (Wear(), Water())
+
+
+def test_play_and_wear_are_told_by_crank_angle_and_by_a_thousand_wipes() -> None:
+    parameters = built("{backlash: {angle_deg: 2}, wear: {blades_percent: 5, brushes_ohm: 0.01, cam_deg: 0.2}}")
+    assert parameters.linkage == pytest.approx(LinkageCondition(1.0, 0.0, 0.0, np.radians(2.0)))
+    assert parameters.wear == pytest.approx(Wear(1.0, 5e-5, 1e-5, np.radians(2e-4), 0.0))
 
 
 def test_obstacles_stand_at_their_side_and_end_in_radians() -> None:
@@ -80,6 +88,9 @@ def test_a_motor_network_that_was_trained_cold_does_not_move_a_motor_with_heat()
         (f"heat: {{{HEAT}, trip_c: 150}}", "trip_c and reset_c are given together"),
         (f"heat: {{{HEAT}, trip_c: 110, reset_c: 150}}", "reset_c must be below trip_c, 110"),
         ("heat: {winding_j_k: 150}", "case_j_k"),
+        ("backlash: {angle_deg: 40}", "angle_deg"),
+        ("wear: {blades: 3}", "unknown key 'blades'"),
+        ("water: {washer_mm_s: 1}", "runoff_percent_s"),
         ("obstacles: {left: {above: {angle_deg: 90}}}", "stiffness_n_m_rad"),
         ("obstacles: {right: {rebound: 2}}", "rebound"),
         ("obstacles: {jam: {angle_deg: 400}}", "angle_deg"),

@@ -41,7 +41,10 @@ def test_every_signal_says_what_it_is_and_what_it_can_be(message: Message) -> No
         assert signal.minimum is not None
         assert signal.maximum is not None
         assert signal.byte_order == "little_endian"
-        is_factor = signal.name.endswith(("Screen", "Wear", "Force")) and message.name == "Blades"
+        is_factor = signal.name.endswith(("Screen", "Wear", "Force", "RainSignal", "Wetness")) and message.name in {
+            "Blades",
+            "RainSensor",
+        }
         assert signal.unit or signal.choices or is_factor or float(signal.scale) == 1.0
         for physical in (signal.minimum, signal.maximum):
             raw = signal.conversion.numeric_scaled_to_raw(physical)
@@ -81,6 +84,13 @@ def test_value_tables_hold_the_plants_own_names() -> None:
         "Master_Input",
         "Flick_Wipe",
         "Wash",
+    from_plant = {"Mode", "Screen", "RelayOn", "RelayFast", "ParkContact", "Guard", "LoadMode", "MotorMode"}
+    assert set(tables) == from_plant | {"Recording"} | {
+        "Master_Input",
+        "Flick_Wipe",
+        "Wash",
+        "Automatic",
+        "WasherPump",
         "EcuState",
         "EcuFault",
     }

@@ -21,10 +21,11 @@ def bench(folder: Path, text: str) -> Path:
 
 def test_the_shipped_stalk_is_read_as_cantools_writes_it() -> None:
     (stalk,) = load_bench().ecu_side().stalk
-    written = {"Master_Input": "Fast", "Intermittent_Switch": 5, "Flick_Wipe": "Pressed", "Wash": "Released"}
+    written = {"Master_Input": "Fast", "Intermittent_Switch": 5, "Flick_Wipe": "Pressed", "Wash": "Released",
+               "Automatic": "On"}  # fmt: skip
     values = stalk.decode(DATABASE.encode_message("StalkCommand", written))
     heard = {ECU_RX[target].name: value for target, value in zip(stalk.targets, values, strict=True)}
-    assert heard == {"master_input": 3.0, "intermittent_switch": 5.0, "flick_wipe": 1.0, "wash": 0.0}
+    assert heard == {"master_input": 3.0, "intermittent_switch": 5.0, "flick_wipe": 1.0, "wash": 0.0, "automatic": 1.0}
     assert stalk.timeout_ns == 0
 
 
@@ -39,16 +40,24 @@ def test_the_shipped_status_is_written_as_cantools_reads_it() -> None:
     assert shown == {"EcuState": "Wash_Wipes", "EcuFault": "Park_Never_Opens", "EcuTries": "255"}
 
 
+RISING = "0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8"
+
+
 def test_every_setting_of_the_controller_can_be_set(tmp_path: Path) -> None:
     changed = {
         "wash_wipes": 5, "debounce_s": 0.03, "turn_timeout_s": 6.0, "leave_timeout_s": 1.5, "bounce_edges": 20,
         "bounce_window_s": 2.0, "stall_current_a": 25.0, "stall_s": 0.7, "brown_out_v": 5.5, "resume_v": 7.5,
         "resume_s": 0.2, "tries": 4, "retry_pause_s": 1.0, "settle_s": 0.4,
-        "rests_open": True,
+        "rests_open": True, "warm_stall_current_a": 4.0, "warm_stall_s": 3.0, "rain_hold_s": 2.0,
     }  # fmt: skip
     written = "".join(f"  {name}: {str(value).lower()}\n" for name, value in changed.items())
-    settings = controller_settings(load_bench(bench(tmp_path, f"ecu:\n  pauses_s: [1, 2, 3, 4, 5, 6]\n{written}")).ecu)
-    assert settings._asdict() == changed | {"pauses_s": (1.0, 2.0, 3.0, 4.0, 5.0, 6.0)}
+    settings = controller_settings(
+        load_bench(bench(tmp_path, f"ecu:\n  pauses_s: [1, 2, 3, 4, 5, 6]\n  rain_levels: [{RISING}]\n{written}")).ecu
+    )
+    assert settings._asdict() == changed | {
+        "pauses_s": (1.0, 2.0, 3.0, 4.0, 5.0, 6.0),
+        "rain_levels": tuple(float(level) for level in RISING.split(",")),
+    }
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,8 @@ from hilplant.ecu.vocabulary import Master, Stalk
 
 def test_a_sequence_is_read_in_order_with_names_or_their_beginnings():
     turns = parse_stalk("0:off, 1.5:slow,6:F,11:intermittent,12:i3,13:5,14:fl,15:wash")
-    moves = [(turn.time_s, *turn.move) for turn in turns]
+    assert not any(turn.move.automatic for turn in turns)
+    moves = [(turn.time_s, *turn.move[:3]) for turn in turns]
     assert moves == [
         (0.0, Master.OFF, None, None),
         (1.5, Master.SLOW, None, None),
