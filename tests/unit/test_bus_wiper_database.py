@@ -84,11 +84,6 @@ def test_value_tables_hold_the_plants_own_names() -> None:
         "Master_Input",
         "Flick_Wipe",
         "Wash",
-    from_plant = {"Mode", "Screen", "RelayOn", "RelayFast", "ParkContact", "Guard", "LoadMode", "MotorMode"}
-    assert set(tables) == from_plant | {"Recording"} | {
-        "Master_Input",
-        "Flick_Wipe",
-        "Wash",
         "Automatic",
         "WasherPump",
         "EcuState",
