@@ -15,17 +15,14 @@ import math
 from typing import Any, NamedTuple
 
 from hilplant.jit import compiled
-from hilplant.models.armature import ArmatureDrive, ArmatureMotion
+from hilplant.models.armature import ArmatureMotion
 from hilplant.models.gear import through_gear
 from hilplant.models.lookup import find, within_turn
 from hilplant.models.mechanical_records import PlayState
 from hilplant.models.motor import advance
-from hilplant.models.motor_choice import NARX, move, without_network
-from hilplant.models.narx import OUTSIDE, PHYSICAL
-from hilplant.models.records import MotorMemory, Parameters, State
+from hilplant.models.records import Parameters, State
 from hilplant.models.resistance import Crank, Resistance
-from hilplant.models.row import changed
-from hilplant.models.shaft import Train, load_torque, turn
+from hilplant.models.shaft import Joint, Train, load_torque
 
 
 class Apart(NamedTuple):
@@ -33,31 +30,6 @@ class Apart(NamedTuple):
 
     turned: float
     speed: float
-
-
-class StepLeft(NamedTuple):
-    """How long what is left of a tick is."""
-
-    step_s: float
-
-
-class ParametersLeft(NamedTuple):
-    """The parameters for what is left of a tick."""
-
-    parameters: Parameters
-
-
-@compiled
-def move_all(
-    motion: ArmatureMotion, crank: Crank, load: Resistance, train: Train, state: State
-) -> tuple[ArmatureMotion, MotorMemory, PlayState]:
-    """Return motor and linkage a step later, with what is remembered of this one."""
-    parameters = train.parameters
-    if parameters.linkage.altered > 0.5 and parameters.linkage.backlash_rad > 0.0:
-        after, play = move_with_play(motion, crank, load, train, state.play)
-        return after, without_network(OUTSIDE if parameters.motor_model == NARX else PHYSICAL), play
-    after, memory = move(motion, crank.angle_rad, load, train, state)
-    return after, memory, PlayState(0.0, 0.0, 0.0)
 
 
 @compiled
@@ -72,42 +44,35 @@ def linkage_crank(speed_rad_s: float, state: State, parameters: Parameters, tabl
 
 
 @compiled
-def move_with_play(
+def join(
     motion: ArmatureMotion, linkage: Crank, load: Resistance, train: Train, now: PlayState
-) -> tuple[ArmatureMotion, PlayState]:
-    """Return the motion a step later, and the linkage's; `load` is that of the linkage at the start."""
+) -> tuple[Joint, PlayState]:
+    """Return where in this tick motor and linkage become one body, and the linkage in its play at the tick's end.
+
+    `load` is that of the linkage at the start. Without play they are one from the start on. Where they part or meet in
+    vain for the whole tick, nothing of it is left for the one body.
+    """
     width, step_s = train.parameters.linkage.backlash_rad, train.parameters.step_s
     ahead = min(now.ahead_rad, width)
+    if train.parameters.linkage.altered < 0.5 or width <= 0.0:
+        return Joint(motion, linkage.angle_rad, step_s), PlayState(0.0, 0.0, 0.0)
     if now.apart < 0.5 and pushes(motion, load, train, ahead):
-        after = turn(motion, linkage.angle_rad, load, train)
-        return after, PlayState(ahead, 0.0, 0.0)
-    ratio = train.parameters.motor.gear_ratio
-    alone, free = advance(motion, without_load(motion, train), step_s), on_its_own(linkage, load, step_s)
-    gap = ahead + free.turned - (alone.turned - motion.turned) / ratio
-    if 0.0 < gap < width:
-        return alone, PlayState(gap, free.speed, 1.0)
-    flank = 0.0 if gap <= 0.0 else width
-    taken = step_s
-    if gap != ahead:
-        taken = step_s * min(1.0, max(0.0, (flank - ahead) / (gap - ahead)))
-    return meet(motion, linkage, load, train, PlayState(flank, 0.0, taken))
-
-
-@compiled
-def meet(
-    motion: ArmatureMotion, linkage: Crank, load: Resistance, train: Train, met: PlayState
-) -> tuple[ArmatureMotion, PlayState]:
-    """Return both after a tick in which they meet at the flank `met.ahead_rad`, `met.apart` seconds from its start."""
-    motor, taken = train.parameters.motor, met.apart
-    alone, free = advance(motion, without_load(motion, train), taken), on_its_own(linkage, load, taken)
+        return Joint(motion, linkage.angle_rad, step_s), PlayState(ahead, 0.0, 0.0)
+    motor, nothing, taken = train.parameters.motor, Resistance(0.0, 0.0, 0.0, 0.0), step_s
+    drive = through_gear(nothing, math.copysign(1.0, motion.speed), motion, train.connection, motor)
+    alone, free, flank = motion, Apart(0.0, 0.0), 0.0
+    for attempt in range(2):  # to the end of the tick; then to where they meet, if they do
+        alone, free = advance(motion, drive, taken), on_its_own(linkage, load, taken)
+        if attempt == 0:
+            gap = ahead + free.turned - (alone.turned - motion.turned) / motor.gear_ratio
+            if 0.0 < gap < width:
+                return Joint(alone, linkage.angle_rad, 0.0), PlayState(gap, free.speed, 1.0)
+            flank = 0.0 if gap <= 0.0 else width
+            taken = step_s * min(1.0, max(0.0, (flank - ahead) / (gap - ahead))) if gap != ahead else step_s
     own = motor.inertia_kg_m2 * motor.gear_ratio * motor.gear_ratio
     common = (own * alone.speed / motor.gear_ratio + load.inertia * free.speed) / (own + load.inertia)
-    joined = ArmatureMotion(alone.current, common * motor.gear_ratio, alone.turned)
-    left = train.parameters.step_s - taken
-    if left > 0.0:
-        rest = changed(train, ParametersLeft(changed(train.parameters, StepLeft(left))))
-        joined = turn(joined, within_turn(linkage.angle_rad + free.turned), load, rest)
-    return joined, PlayState(met.ahead_rad, 0.0, 0.0)
+    met = ArmatureMotion(alone.current, common * motor.gear_ratio, alone.turned)
+    return Joint(met, within_turn(linkage.angle_rad + free.turned), step_s - taken), PlayState(flank, 0.0, 0.0)
 
 
 @compiled
@@ -123,13 +88,6 @@ def pushes(motion: ArmatureMotion, load: Resistance, train: Train, ahead_rad: fl
         return not free and not falls
     forwards = direction * load_torque(motion, load, train)
     return forwards <= 0.0 if ahead_rad > 0.0 else forwards >= 0.0
-
-
-@compiled
-def without_load(motion: ArmatureMotion, train: Train) -> ArmatureDrive:
-    """Return what acts on the armature while its crank touches nothing."""
-    nothing = Resistance(0.0, 0.0, 0.0, 0.0)
-    return through_gear(nothing, math.copysign(1.0, motion.speed), motion, train.connection, train.parameters.motor)
 
 
 @compiled

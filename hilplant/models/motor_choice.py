@@ -24,7 +24,7 @@ from hilplant.models.narx import (
 )
 from hilplant.models.records import MotorMemory, Parameters, Sample, State
 from hilplant.models.resistance import Resistance
-from hilplant.models.shaft import Train, drive_at, turn
+from hilplant.models.shaft import Joint, Train, drive_at, turn
 
 #: Names of the models of the motor; ``Parameters.motor_model`` is the place in this list.
 MOTORS = ("ode", "narx")
@@ -32,16 +32,18 @@ NARX = MOTORS.index("narx")
 
 
 @compiled
-def move(
-    motion: ArmatureMotion, crank_angle_rad: float, load: Resistance, train: Train, state: State
-) -> tuple[ArmatureMotion, MotorMemory]:
-    """Return the motion a step later and what is remembered of this one; `load` is that at the start."""
+def move(joint: Joint, load: Resistance, train: Train, state: State) -> tuple[ArmatureMotion, MotorMemory]:
+    """Return the motion a step later and what is remembered of this one; `load` is that at the start.
+
+    Where motor and linkage are not one body from the tick's start on, the network is not active.
+    """
+    motion = joint.motion
     memory, after, accepted = without_network(PHYSICAL), motion, False
     if train.parameters.motor_model == NARX:
         memory, after = by_network(motion, load, train, state)
         accepted = memory.mode == NETWORK
     if not accepted:
-        after = turn(motion, crank_angle_rad, load, train)
+        after = turn(joint, load, train)
         if train.parameters.motor_model == NARX:
             memory = remembered(motion, after, memory.mode, train)
     return after, memory

@@ -4,12 +4,13 @@ from typing import Any, NamedTuple
 
 from hilplant.jit import compiled
 from hilplant.models.armature import ArmatureMotion
-from hilplant.models.backlash import linkage_crank, move_all
+from hilplant.models.backlash import join, linkage_crank
 from hilplant.models.circuit import connect, next_phase
 from hilplant.models.guard import admit, hold_if_wrong
 from hilplant.models.linkage_faults import LINK_BROKEN, broken_at
 from hilplant.models.load import NETWORK, resist_as
 from hilplant.models.lookup import derivative, value, within_turn
+from hilplant.models.motor_choice import move
 from hilplant.models.park_switch import contact_now
 from hilplant.models.records import Parameters, State
 from hilplant.models.reduced import left_pressing, right_pressing
@@ -63,7 +64,8 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     crank = linkage_crank(speed, state, parameters, tables)
     load = resist_as(load_mode, tangent, crank, parameters, inputs)
     # 5 motor and load together to the next tick
-    after, memory, play = move_all(motion, crank, load, train, state)
+    joint, play = join(motion, crank, load, train, state.play)
+    after, memory = move(joint, load, train, state)
     seen = read_current(motion.current, state.noise, parameters.sensors)
     shown = Seen(seen.current_a, contact.shown, memory.mode, state)
     outputs = measured(motion, crank, load, shown, train)

@@ -51,6 +51,14 @@ class Ahead(NamedTuple):
     half_way: ArmatureMotion
 
 
+class Joint(NamedTuple):
+    """From where motor and linkage move as one body in a tick: the motion then, the crank's angle, and for how long."""
+
+    motion: ArmatureMotion
+    crank_angle_rad: float
+    left_s: float
+
+
 @compiled
 def drive_at(motion: ArmatureMotion, direction: float, load: Resistance, train: Train) -> ArmatureDrive:
     """Return what acts on the armature while it turns in `direction`."""
@@ -92,24 +100,28 @@ def hold_of(load: Resistance, motor: Motor) -> Hold:
 
 
 @compiled
-def turn(motion: ArmatureMotion, crank_angle_rad: float, load: Resistance, train: Train) -> ArmatureMotion:
-    """Return the motion one step later; `load` is that at the start."""
+def turn(joint: Joint, load: Resistance, train: Train) -> ArmatureMotion:
+    """Return the motion at the end of the tick; `load` is that at its start."""
     if not without_inertia(train.parameters):
-        return turn_in_stretches(motion, crank_angle_rad, load, train)
-    duration, crank_speed = train.parameters.step_s, motion.speed / train.parameters.motor.gear_ratio
-    half_way = crank_angle_rad + 0.5 * duration * crank_speed
+        return turn_in_stretches(joint, load, train)
+    motion, duration, ratio = joint.motion, joint.left_s, train.parameters.motor.gear_ratio
+    crank_speed = motion.speed / ratio
+    half_way = joint.crank_angle_rad + 0.5 * duration * crank_speed
     parameters = train.parameters
     held = by_speed(half_way, crank_speed, parameters.load, train.inputs, parameters.networks)
     return advance(motion, drive_at(motion, 1.0, held, train), duration)
 
 
 @compiled
-def turn_in_stretches(motion: ArmatureMotion, crank_angle_rad: float, load: Resistance, train: Train) -> ArmatureMotion:
-    """Return the motion one step later, with the load evaluated anew in each stretch.
+def turn_in_stretches(joint: Joint, load: Resistance, train: Train) -> ArmatureMotion:
+    """Return the same with the load evaluated anew in each stretch.
 
     After `STRETCHES` stretches without an end the shaft stands still for what is left of the step.
     """
-    left, ratio = train.parameters.step_s, train.parameters.motor.gear_ratio
+    motion, begun = joint.motion, joint.motion.turned
+    left, ratio = joint.left_s, train.parameters.motor.gear_ratio
+    if left <= 0.0:
+        return motion
     drive = drive_at(motion, math.copysign(1.0, motion.speed), load, train)
     direction = 0.0
     if motion.speed == 0.0:
@@ -121,7 +133,7 @@ def turn_in_stretches(motion: ArmatureMotion, crank_angle_rad: float, load: Resi
         if motion.speed != 0.0:
             direction = math.copysign(1.0, motion.speed)
         ahead = look_ahead(motion, drive, direction, left, train)
-        angle = within_turn(crank_angle_rad + ahead.half_way.turned / ratio)
+        angle = within_turn(joint.crank_angle_rad + (ahead.half_way.turned - begun) / ratio)
         crank = Crank(train.tables, find(train.tables, angle), angle, ahead.half_way.speed / ratio)
         load = resist_as(train.load_mode, train.tangent, crank, train.parameters, train.inputs)
         if direction == 0.0:
