@@ -14,7 +14,7 @@ their momenta is kept, (J n^2 + M) v = J n^2 w(crank) + M w(linkage), without re
 import math
 from typing import Any, NamedTuple
 
-from hilplant.jit import compiled
+from hilplant.jit import compiled, compiled_apart
 from hilplant.models.armature import ArmatureMotion
 from hilplant.models.gear import through_gear
 from hilplant.models.lookup import find, within_turn
@@ -49,13 +49,20 @@ def join(
 ) -> tuple[Joint, PlayState]:
     """Return where in this tick motor and linkage become one body, and the linkage in its play at the tick's end.
 
-    `load` is that of the linkage at the start. Without play they are one from the start on. Where they part or meet in
-    vain for the whole tick, nothing of it is left for the one body.
+    `load` is that of the linkage at the start. Without play they are one from the start on.
     """
+    if train.parameters.linkage.altered < 0.5 or train.parameters.linkage.backlash_rad <= 0.0:
+        return Joint(motion, linkage.angle_rad, train.parameters.step_s), PlayState(0.0, 0.0, 0.0)
+    return join_with_play(motion, linkage, load, train, now)
+
+
+@compiled_apart
+def join_with_play(
+    motion: ArmatureMotion, linkage: Crank, load: Resistance, train: Train, now: PlayState
+) -> tuple[Joint, PlayState]:
+    """Return the same where there is play; of a tick that they spend apart nothing is left for the one body."""
     width, step_s = train.parameters.linkage.backlash_rad, train.parameters.step_s
     ahead = min(now.ahead_rad, width)
-    if train.parameters.linkage.altered < 0.5 or width <= 0.0:
-        return Joint(motion, linkage.angle_rad, step_s), PlayState(0.0, 0.0, 0.0)
     if now.apart < 0.5 and pushes(motion, load, train, ahead):
         return Joint(motion, linkage.angle_rad, step_s), PlayState(ahead, 0.0, 0.0)
     motor, nothing, taken = train.parameters.motor, Resistance(0.0, 0.0, 0.0, 0.0), step_s

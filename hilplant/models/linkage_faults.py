@@ -12,7 +12,7 @@ that falls, or is blown about, is not modelled.
 
 from typing import NamedTuple
 
-from hilplant.jit import compiled
+from hilplant.jit import compiled, compiled_apart
 from hilplant.models import tables as channel
 from hilplant.models.lookup import derivative, value
 from hilplant.models.mechanical_records import LinkageCondition, LinkageState
@@ -49,7 +49,7 @@ def without_lost_blades(load: Load, condition: LinkageCondition) -> Load:
     return changed(load, BothBlades(left, right))
 
 
-@compiled
+@compiled_apart
 def without_lost_sides(whole: Resistance, crank: Crank, parameters: Parameters, inputs: Inputs) -> Resistance:
     """Return the load of the whole wiper without what arms and blades that are lost put on the crank."""
     condition, first = parameters.linkage, channel.POINTS + 2 * int(parameters.load.points)

@@ -14,7 +14,7 @@ comes again. A jam resists with a constant torque wherever the crank is within i
 
 from typing import NamedTuple
 
-from hilplant.jit import compiled
+from hilplant.jit import compiled, compiled_apart
 from hilplant.models import tables as channel
 from hilplant.models.lookup import derivative, value
 from hilplant.models.mechanical_records import IceState, Obstacles, SideObstacles
@@ -44,7 +44,7 @@ class BothSides(NamedTuple):
     right: SideObstacles
 
 
-@compiled
+@compiled_apart
 def obstructed(free: Resistance, crank: Crank, parameters: Parameters) -> Resistance:
     """Return the load with what is in its way at this angle."""
     of = parameters.obstacles

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from hilplant.jit import compiled
+from hilplant.jit import compiled, compiled_apart
 from hilplant.models.armature import ArmatureMotion
 from hilplant.models.heat import heated, losses, warmed
 from hilplant.models.linkage_faults import broken_at, without_lost_blades
@@ -52,6 +52,12 @@ def as_it_is(parameters: Parameters, state: State) -> Parameters:
     altered = parameters.heat.altered + parameters.obstacles.altered + parameters.linkage.altered
     if altered + parameters.wear.altered == 0.0:
         return parameters
+    return slowly_altered(parameters, state)
+
+
+@compiled_apart
+def slowly_altered(parameters: Parameters, state: State) -> Parameters:
+    """Return the same where something of it has been altered."""
     motor, load, obstacles = parameters.motor, parameters.load, parameters.obstacles
     switch = parameters.park_switch
     if parameters.wear.altered > 0.5:

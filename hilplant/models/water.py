@@ -15,7 +15,7 @@ The rain sensor shows 1 - exp(-h/s): light that the glass reflects inside is los
 import math
 from typing import NamedTuple
 
-from hilplant.jit import compiled
+from hilplant.jit import compiled, compiled_apart
 from hilplant.models.friction import TACKY
 from hilplant.models.records import Parameters
 from hilplant.models.row import changed
@@ -50,7 +50,7 @@ def wetness(film_mm: float, water: Water) -> float:
     return min(1.0, TACKY + (1.0 - TACKY) * (film_mm - water.tacky_mm) / (water.wet_mm - water.tacky_mm))
 
 
-@compiled
+@compiled_apart
 def film_after(now: WaterState, inputs: Inputs, parameters: Parameters, turned_rad: float) -> WaterState:
     """Return the film a tick later, in which the crank has turned by `turned_rad`, not negative."""
     water, step_s = parameters.water, parameters.step_s
