@@ -30,6 +30,7 @@ from hilplant.models.load import LOADS
 from hilplant.models.mechanical_records import LinkageCondition, Obstacles
 from hilplant.models.records import Blade, Friction, Load, Parameters, ParkSwitch, Relays
 from hilplant.models.slow_records import Heat, Water, Wear
+from hilplant.models.training import load_mark, motor_mark
 from hilplant.units import MILLISECOND_NS, RAD_PER_DEG, SECOND_NS
 
 Blades = tuple[BladeEntry, BladeEntry]
@@ -79,6 +80,8 @@ def build_plant(spot: Spot, plant: PlantSection, step_ns: int) -> Plant | None:
         linkage=plant.backlash.record() if plant.backlash is not None else LinkageCondition(),
         wear=plant.wear.record() if plant.wear is not None else Wear(),
         water=_water(plant),
+        trained_load=load_mark(record),
+        trained_motor=motor_mark(motor.record()),
         networks=row_of_networks(trained.numbers, mover.numbers),
     )
     check_bounds(spot.inner("load"), trained, parameters, mechanics.table)

@@ -22,9 +22,10 @@ from hilplant.models.narx import (
     predict,
     within,
 )
-from hilplant.models.records import MotorMemory, Parameters, Sample, State
+from hilplant.models.records import MotorMemory, Sample, State
 from hilplant.models.resistance import Resistance
 from hilplant.models.shaft import Joint, Train, drive_at, turn
+from hilplant.models.training import motor_altered
 
 #: Names of the models of the motor; ``Parameters.motor_model`` is the place in this list.
 MOTORS = ("ode", "narx")
@@ -59,7 +60,7 @@ def by_network(
     before = state.memory.last
     speed = motion.speed / train.parameters.motor.gear_ratio
     now = Sample(train.connection.terminal_v, state.memory.last.torque_n_m, motion.current, speed)
-    if beyond_training(train.parameters):
+    if motor_altered(train.parameters):
         return without_network(OUTSIDE), motion
     if brush == NO_BRUSH or speed < networks[path + 4]:
         return without_network(STANDSTILL), motion
@@ -74,13 +75,6 @@ def by_network(
     if not (within(networks, path, now, margin) and within(networks, path, reached, 0.0)):
         return without_network(OUTSIDE), motion
     return MotorMemory(now, brush, NETWORK), after
-
-
-@compiled
-def beyond_training(parameters: Parameters) -> bool:
-    """Return whether the plant has what no network knows: ideal wires, a cold motor, a free way."""
-    electrical = parameters.wiring.altered > 0.5 or parameters.heat.altered > 0.5
-    return bool(electrical or parameters.obstacles.altered > 0.5 or parameters.linkage.altered > 0.5)
 
 
 @compiled
@@ -131,7 +125,7 @@ def remembered(before: ArmatureMotion, after: ArmatureMotion, mode: float, train
     That torque is what the integrals of (3.30) and (3.31) over the tick leave for it.
     """
     brush, ratio = brush_of(train), train.parameters.motor.gear_ratio
-    if brush == NO_BRUSH or after.speed <= 0.0 or beyond_training(train.parameters):
+    if brush == NO_BRUSH or after.speed <= 0.0 or motor_altered(train.parameters):
         return without_network(mode)
     torque = carried_torque(before, after, train)
     sample = Sample(train.connection.terminal_v, torque, before.current, before.speed / ratio)

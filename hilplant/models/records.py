@@ -179,6 +179,10 @@ class Parameters(NamedTuple):
     linkage: LinkageCondition = LinkageCondition()
     wear: Wear = Wear()
     water: Water = Water()
+    trained_load: Annotated[
+        float, quantity("", "training.load_mark of the load for which a network was trained; 0: not looked at")
+    ] = 0.0
+    trained_motor: Annotated[float, quantity("", "the same of the motor")] = 0.0
     networks: Any = NO_NETWORKS
 
 

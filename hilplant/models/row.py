@@ -4,7 +4,7 @@ A call into compiled code takes ten times as long with a record as with an array
 on the inside. Rows have the order of the declaration (:mod:`hilplant.declaration`), inner records in place; an array at
 the end of a record is what is left of the row.
 
-Compiled code may call the five functions below. For it each is written out for the type of its record, which costs what
+Compiled code may call the six functions below. For it each is written out for the type of its record, which costs what
 the same written by hand costs; a translation of the step to another language must do the same:
 
 ``unpack(Record, row)``
@@ -13,6 +13,8 @@ the same written by hand costs; a translation of the step to another language mu
     ``row[0] = record.x; row[1] = record.inner.y; ...``; an array at the end is not written
 ``all_finite(record)``
     ``0.0 * record.x + 0.0 * record.inner.y + ... == 0.0``, a sum over the elements that are declared as watched
+``summed(record)``
+    ``1.41421356 * record.x + 1.73205081 * record.inner.y + ...``, a sum by which a change of any element is seen
 ``guarded(record)``
     ``Record(0.0, finite(record.y), ...)``: the constant that is declared, else what :func:`finite` makes of the element
 ``changed(record, changes)``
@@ -56,6 +58,21 @@ def all_finite(record: tuple[Any, ...]) -> bool:
     """Return whether all elements that are watched are finite."""
     signals = declared(type(record))
     return all(math.isfinite(value) for signal, value in zip(signals, pack(record), strict=True) if signal.watched)
+
+
+def summed(record: tuple[Any, ...]) -> float:
+    """Return a sum over all elements, each with a weight of its own: it tells whether any of them has changed."""
+    terms = [weight * value for weight, value in zip(_weights(record), pack(record).tolist(), strict=True)]
+    while len(terms) > 1:  # as it is written out
+        terms = [sum(terms[first + 1 : first + 2], terms[first]) for first in range(0, len(terms), 2)]
+    return float(terms[0])
+
+
+def _weights(record: Any) -> list[float]:
+    """Return square roots of whole numbers, so that no two changes that people make cancel each other."""
+    return [
+        math.sqrt(index + 2.0) for index in range(len(declared(record if isinstance(record, type) else type(record))))
+    ]
 
 
 def guarded(record: Record) -> Record:
@@ -117,9 +134,20 @@ def _write(record: type[Any], _: None) -> Written:
 @written_out(all_finite)
 def _all_finite(record: type[Any]) -> Written:
     terms = [f"0.0 * record.{signal.name}" for signal in declared(record) if signal.watched]
-    while len(terms) > 1:  # sums of sums, so that the processor need not wait for one after the other
+    return [f"return {_sum_of(terms)} == 0.0"], {}
+
+
+def _sum_of(terms: list[str]) -> str:
+    """Return sums of sums, so that the processor need not wait for one after the other."""
+    while len(terms) > 1:
         terms = [f"({' + '.join(terms[first : first + 2])})" for first in range(0, len(terms), 2)]
-    return [f"return {terms[0]} == 0.0"], {}
+    return terms[0]
+
+
+@written_out(summed)
+def _summed(record: type[Any]) -> Written:
+    terms = [f"{w!r} * record.{signal.name}" for w, signal in zip(_weights(record), declared(record), strict=True)]
+    return [f"return {_sum_of(terms)}"], {}
 
 
 @written_out(guarded)

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from hilplant.jit import compiled
 from hilplant.models.records import Parameters
+from hilplant.models.training import load_altered
 from hilplant.signals import Inputs
 
 #: Places of the head: neurons, lowest and highest speed of the crank in the training [rad/s], what must be left of
@@ -74,14 +75,14 @@ def active_load_model(parameters: Parameters, crank_speed_rad_s: float, inputs: 
     """Return who gives the torque in this tick; `before` is who did in the last one.
 
     The training knows forward speeds within its range, a dry or a wet screen under both blades, and no brake, wind,
-    wear or change of the arms' forces, nothing in the way of the arms and none lost. Between dry and wet the physical
-    load passes through the tacky screen, which the network does not know.
+    wear or change of the arms' forces, nothing in the way of the arms, none lost, and no other friction or blades.
+    Between dry and wet the physical load passes through the tacky screen, which the network does not know.
     """
     networks = parameters.networks
     if networks.shape[0] == 0 or networks[0] == 0.0:
         return PHYSICAL
     margin = 0.0 if before == NETWORK else networks[MARGIN]
-    if parameters.obstacles.altered > 0.5 or parameters.linkage.altered > 0.5 or not trained(inputs):
+    if load_altered(parameters) or not trained(inputs):
         return OUTSIDE
     if not crank_speed_rad_s >= networks[LOWEST] + margin:
         return STANDSTILL
