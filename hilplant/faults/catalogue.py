@@ -59,12 +59,21 @@ def _at_terminal(terminal: str, what: str) -> list[FaultDefinition]:
     ]  # fmt: skip
 
 
+#: What the contact does in the time after its command changes; before and after, it is where it was and where it goes.
+_RELAY_EFFECTS = {
+    "operates_late": "commanded on: for the time at rest still, then pulled in",
+    "releases_late": "commanded off: for the time pulled in still, then at rest",
+    "transfers_slowly": "commanded anew: for the time touching neither contact, no current, then there",
+    "bounces": "arrived: for the time in every second tick lifted off, no current, then there",
+}
+
+
 def _at_relay(relay: str, what: str) -> list[FaultDefinition]:
     at = f"relays.{relay}"
     timings = {"operates_late": "operate_ticks", "releases_late": "release_ticks", "transfers_slowly": "transfer_ticks"}
     slow = [
         FaultDefinition(f"relay_{relay}_{name}", "relay", f"{what} {name.replace('_', ' ')}",
-              "see models/relays.py", (_ticks(f"{at}.{element}"),), (_TIME,))
+              _RELAY_EFFECTS[name], (_ticks(f"{at}.{element}"),), (_TIME,))
         for name, element in (timings | {"bounces": "bounce_ticks"}).items()
     ]  # fmt: skip
     return [
