@@ -1,8 +1,8 @@
 """Every fault of the plant: what it does is seen in the outputs, and when it has gone nothing of it is left.
 
-Each runs on the default and on the mechanical bench, where terminal 53e and the park contact carry current: slow, fast,
-off, with a wind and from rest on the screen. Where a fault came and went while the wiper was parked and did not move it,
-all that follows must be bit for bit as without it.
+Each runs on the default and on the mechanical bench, where terminal 53e and the park contact carry current: slow,
+fast, off, and slow again. Where a fault came and went while the wiper was parked and did not move it, all that follows must be
+bit for bit as without it.
 """
 
 from functools import cache
@@ -89,7 +89,7 @@ def test_the_effect_of_a_fault_is_seen_in_the_outputs(fault: FaultDefinition) ->
 def test_a_fault_that_has_gone_leaves_nothing_behind(fault: FaultDefinition) -> None:
     name = "default"
     own, parked = bench(name).parameter_row, np.tile(bench(name).input_row, (PARKED, 1))
-    without, before = run(name, [(parked, own), (parked[:2], own)])
+    _, before = run(name, [(parked, own), (parked[:2], own)])
     _, state = run(name, [(parked, row_with(fault, name)), (parked[:2], own)])
     moved = any(state[STATE_INDEX[each]] != before[STATE_INDEX[each]] for each in PHYSICAL)
     left = {each for each, index in STATE_INDEX.items() if state[index] != before[index]}
