@@ -56,7 +56,7 @@ def test_what_is_left_is_a_wiper_with_one_arm(side: str, broken: float, scenario
 def test_an_arm_whose_link_breaks_is_shown_where_it_was_and_back_on_its_rocker_when_it_is_whole() -> None:
     state, tables = State(crank_angle_rad=1.3), WIPER.tables()
     outputs = run_step(plant(LinkageCondition(1.0, left=2.0)), tables, Rows(800, screen=WET, relay_on=1).rows, state)
-    assert (shown(outputs, "left_rocker_rad") == pytest.approx(WIPER.left.rocker(1.3)[0], abs=1e-6)).all()
+    assert shown(outputs, "left_rocker_rad") == pytest.approx(np.full(800, WIPER.left.rocker(1.3)[0]), abs=1e-6)
     assert (shown(outputs, "left_blade_m_s") == 0.0).all()
     assert np.ptp(shown(outputs, "right_arm_rad")) > 0.3
 
@@ -139,18 +139,17 @@ def test_play_moves_as_two_bodies_with_a_stiff_spring_and_damper_between_them() 
     assert max(*errors, arm_error) < 2.0
 
 
-def test_arms_stand_still_until_a_reversed_crank_has_crossed_the_play() -> None:
-    """With friction, so that the linkage stays where it is let go: on paper the arms lag by the play."""
+def test_arms_stand_still_until_a_crank_that_starts_again_has_crossed_the_play() -> None:
+    """The motor brakes hard, the linkage runs on to the other flank and rests there: on paper the play is before it."""
     backlash = np.radians(4.0)
-    rows = Rows(3000, screen=WET, relay_on=1).set(520, 900, relay_on=0).set(900, 3000, supply_v=-9.0).rows
+    rows = Rows(1300, screen=WET, relay_on=1).set(520, 900, relay_on=0).rows
     outputs = run_step(plant(LinkageCondition(1.0, backlash_rad=backlash)), WIPER.tables(), rows)
     crank, arm = np.unwrap(shown(outputs, "crank_angle_rad")), shown(outputs, "left_arm_rad")
-    rests = arm[899]
-    leaves = 900 + int(np.argmax(np.abs(arm[900:] - rests) > 1e-9))
-    linkage = next(a for a in np.linspace(crank[899], crank[899] + backlash, 20001)
-                   if abs(WIPER.left.rocker(a)[0] + 0.3 - rests) < 2e-6)  # fmt: skip
-    assert crank[leaves] == pytest.approx(linkage - backlash, abs=np.radians(0.4))
-    assert crank[899] - crank[leaves] > 0.2 * backlash
+    leaves = 900 + int(np.argmax(np.abs(arm[900:] - arm[899]) > 1e-9))
+    linkage = next(a for a in np.linspace(crank[899], crank[899] + 1.1 * backlash, 22001)
+                   if abs(WIPER.left.rocker(a)[0] + 0.3 - arm[899]) < 2e-6)  # fmt: skip
+    assert crank[leaves] == pytest.approx(linkage, abs=np.radians(0.3))
+    assert crank[leaves] - crank[899] > 0.7 * backlash
 
 
 @pytest.mark.parametrize("scenario", ["start and run", "reverse", "park"])

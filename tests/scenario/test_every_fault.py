@@ -1,8 +1,8 @@
 """Every fault of the plant: what it does is seen in the outputs, and when it has gone nothing of it is left.
 
 Each runs on the default and on the mechanical bench, where terminal 53e and the park contact carry current: slow,
-fast, off, and slow again. Where a fault came and went while the wiper was parked and did not move it, all that follows must be
-bit for bit as without it.
+fast, off, and slow again. Where a fault came and went while the wiper was parked and did not move it, all that follows
+must be bit for bit as without it.
 """
 
 from functools import cache
