@@ -44,35 +44,35 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     """
     # 1 what is not finite stays outside; motor, blades and screen are as the slow states have made them
     state, inputs = admit(state, inputs)
-    told, parameters = parameters, as_it_is(parameters, state)
-    inputs = wetted(inputs, parameters, state.water)
-    angle, speed = state.crank_angle_rad, state.motor_speed_rad_s / parameters.motor.gear_ratio
+    actual = as_it_is(parameters, state)
+    inputs = wetted(inputs, actual, state.water)
+    angle, speed = state.crank_angle_rad, state.motor_speed_rad_s / actual.motor.gear_ratio
     # 2 park switch and relays
-    contact = contact_now(angle, state.park_contact, state.bounce_left, parameters.park_switch)
-    contact, moved = stick_contact(contact, parameters.sensors), move_relays(inputs, state, parameters)
-    phase = next_phase(moved.inputs, parameters.park_switch, contact, state.park_phase, angle)
+    contact = contact_now(angle, state.park_contact, state.bounce_left, actual.park_switch)
+    contact, moved = stick_contact(contact, actual.sensors), move_relays(inputs, state, actual)
+    phase = next_phase(moved.inputs, actual.park_switch, contact, state.park_phase, angle)
     # 3 supply, wires and park circuit
-    connection = connect(moved.inputs, parameters, contact, phase, state)
+    connection = connect(moved.inputs, actual, contact, phase, state)
     # 4 kinematics and load at this instant
     motion = ArmatureMotion(state.current_a if connection.closed > 0.5 else 0.0, state.motor_speed_rad_s, 0.0)
     load_mode, tangent = PHYSICAL, NO_TANGENT
-    if parameters.load.model == NETWORK:
-        load_mode = active_load_model(parameters, speed, inputs, state.load_mode)
+    if actual.load.model == NETWORK:
+        load_mode = active_load_model(actual, speed, inputs, state.load_mode)
     if load_mode == BY_NETWORK:
-        tangent = network_tangent(parameters.networks, angle, speed, inputs.screen == 1.0)
-    train = Train(connection, tables, inputs, parameters, load_mode, tangent)
-    crank = linkage_crank(speed, state, parameters, tables)
-    load = resist_as(load_mode, tangent, crank, parameters, inputs)
+        tangent = network_tangent(actual.networks, angle, speed, inputs.screen == 1.0)
+    train = Train(connection, tables, inputs, actual, load_mode, tangent)
+    crank = linkage_crank(speed, state, actual, tables)
+    load = resist_as(load_mode, tangent, crank, actual, inputs)
     # 5 motor and load together to the next tick
     joint, play = join(motion, crank, load, train, state.play)
     after, memory = move(joint, load, train, state)
-    seen = read_current(motion.current, state.noise, parameters.sensors)
+    seen = read_current(motion.current, state.noise, actual.sensors)
     shown = Seen(seen.current_a, contact.shown, memory.mode, state)
     outputs = measured(motion, crank, load, shown, train)
     # 6 slow states
-    reached = within_turn(angle + after.turned / parameters.motor.gear_ratio)
+    reached = within_turn(angle + after.turned / actual.motor.gear_ratio)
     there = Reached(motion, after, within_turn(reached + play.ahead_rad))
-    slow = slow_after(crank, there, train, state, told)
+    slow = slow_after(crank, there, train, state, parameters)
     # 7 guard
     following = State(
         current_a=without_denormals(after.current),
