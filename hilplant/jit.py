@@ -92,20 +92,20 @@ def compiled(function: Function) -> Function:
     It may read and write arrays of its caller. It cannot make one, which is an error when it is compiled, and must not
     return one to Python.
     """
-    if vars(numba.config)["DISABLE_JIT"]:
-        return function
-    dispatcher = Inlined(function, targetoptions={"nopython": True, **_OPTIONS})
-    dispatcher.enable_caching()
-    return cast(Function, dispatcher)
+    return _taken_in(function, _OPTIONS)
 
 
 def compiled_apart(function: Function) -> Function:
-    """Compile a model function that few benches call: it stays a piece of its own.
+    """Compile a model function that few benches call: the code of what calls it calls it, and does not contain it."""
+    return _taken_in(function, {name: value for name, value in _OPTIONS.items() if name != "forceinline"})
 
-    What calls it is compiled as fast as without it, and runs as fast as long as it does not call it.
-    """
-    options = {name: value for name, value in _OPTIONS.items() if name != "forceinline"}
-    return cast(Function, numba.njit(cache=True, **options)(function))
+
+def _taken_in(function: Function, options: Any) -> Function:
+    if vars(numba.config)["DISABLE_JIT"]:
+        return function
+    dispatcher = Inlined(function, targetoptions={"nopython": True, **options})
+    dispatcher.enable_caching()
+    return cast(Function, dispatcher)
 
 
 #: The lines of a function's body, and what the names in it mean.
