@@ -139,19 +139,6 @@ def test_play_moves_as_two_bodies_with_a_stiff_spring_and_damper_between_them() 
     assert max(*errors, arm_error) < 2.0
 
 
-def test_arms_stand_still_until_a_crank_that_starts_again_has_crossed_the_play() -> None:
-    """The motor brakes hard, the linkage runs on to the other flank and rests there: on paper the play is before it."""
-    backlash = np.radians(4.0)
-    rows = Rows(1300, screen=WET, relay_on=1).set(520, 900, relay_on=0).rows
-    outputs = run_step(plant(LinkageCondition(1.0, backlash_rad=backlash)), WIPER.tables(), rows)
-    crank, arm = np.unwrap(shown(outputs, "crank_angle_rad")), shown(outputs, "left_arm_rad")
-    leaves = 900 + int(np.argmax(np.abs(arm[900:] - arm[899]) > 1e-9))
-    linkage = next(a for a in np.linspace(crank[899], crank[899] + 1.1 * backlash, 22001)
-                   if abs(WIPER.left.rocker(a)[0] + 0.3 - arm[899]) < 2e-6)  # fmt: skip
-    assert crank[leaves] == pytest.approx(linkage, abs=np.radians(0.3))
-    assert crank[leaves] - crank[899] > 0.7 * backlash
-
-
 @pytest.mark.parametrize("scenario", ["start and run", "reverse", "park"])
 def test_play_never_adds_energy_and_a_little_of_it_changes_little(scenario: str) -> None:
     rows = SCENARIOS[scenario]()
