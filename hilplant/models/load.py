@@ -8,11 +8,11 @@ from hilplant.models.linkage_faults import without_lost_sides
 from hilplant.models.lookup import value
 from hilplant.models.obstacles import obstructed
 from hilplant.models.polynomial import torque_over_speed
-from hilplant.models.records import Load, Parameters
+from hilplant.models.records import Load, Parameters, State
 from hilplant.models.reduced import reduced
 from hilplant.models.resistance import Crank, Resistance
 from hilplant.models.torque_network import NETWORK as BY_NETWORK
-from hilplant.models.torque_network import Tangent, reaches
+from hilplant.models.torque_network import NO_TANGENT, PHYSICAL, Tangent, active_load_model, network_tangent, reaches
 from hilplant.signals import Inputs
 from hilplant.units import TURN_RAD
 
@@ -50,6 +50,17 @@ def resist(crank: Crank, parameters: Parameters, inputs: Inputs) -> Resistance:
             whole = without_lost_sides(whole, crank, parameters, inputs)
         return whole
     return by_speed(crank.angle_rad, crank.speed_rad_s, load, inputs, parameters.networks)
+
+
+@compiled
+def network_now(parameters: Parameters, inputs: Inputs, speed_rad_s: float, state: State) -> tuple[float, Tangent]:
+    """Return which model gives the torque at the crank's speed in this tick, and the network's tangent if it does."""
+    if parameters.load.model != NETWORK:
+        return PHYSICAL, NO_TANGENT
+    mode = active_load_model(parameters, speed_rad_s, inputs, state.load_mode)
+    if mode != BY_NETWORK:
+        return mode, NO_TANGENT
+    return mode, network_tangent(parameters.networks, state.crank_angle_rad, speed_rad_s, inputs.screen == 1.0)
 
 
 @compiled

@@ -8,7 +8,7 @@ from hilplant.models.backlash import join, linkage_crank
 from hilplant.models.circuit import connect, next_phase
 from hilplant.models.guard import admit, hold_if_wrong
 from hilplant.models.linkage_faults import LINK_BROKEN, broken_at
-from hilplant.models.load import NETWORK, resist_as
+from hilplant.models.load import network_now, resist_as
 from hilplant.models.lookup import derivative, value, within_turn
 from hilplant.models.motor_choice import move
 from hilplant.models.park_switch import contact_now
@@ -21,8 +21,6 @@ from hilplant.models.sensors import read_current, stick_contact
 from hilplant.models.shaft import Train, load_torque
 from hilplant.models.slow_states import Reached, as_it_is, slow_after
 from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
-from hilplant.models.torque_network import NETWORK as BY_NETWORK
-from hilplant.models.torque_network import NO_TANGENT, PHYSICAL, active_load_model, network_tangent
 from hilplant.models.water import rain_signal, wetted
 from hilplant.signals import Inputs, Outputs
 
@@ -44,36 +42,28 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     """
     # 1 what is not finite stays outside; motor, blades and screen are as the slow states have made them
     state, inputs = admit(state, inputs)
-    actual = as_it_is(parameters, state)
-    inputs = wetted(inputs, actual, state.water)
-    angle, speed = state.crank_angle_rad, state.motor_speed_rad_s / actual.motor.gear_ratio
-    # 2 park switch and relays
+    actual, angle = as_it_is(parameters, state), state.crank_angle_rad
+    inputs, speed = wetted(inputs, actual, state.water), state.motor_speed_rad_s / actual.motor.gear_ratio
+    # 2 park switch, relays, supply, wires and park circuit
     contact = contact_now(angle, state.park_contact, state.bounce_left, actual.park_switch)
     contact, moved = stick_contact(contact, actual.sensors), move_relays(inputs, state, actual)
     phase = next_phase(moved.inputs, actual.park_switch, contact, state.park_phase, angle)
-    # 3 supply, wires and park circuit
     connection = connect(moved.inputs, actual, contact, phase, state)
-    # 4 kinematics and load at this instant
+    # 3 kinematics and load at this instant
     motion = ArmatureMotion(state.current_a if connection.closed > 0.5 else 0.0, state.motor_speed_rad_s, 0.0)
-    load_mode, tangent = PHYSICAL, NO_TANGENT
-    if actual.load.model == NETWORK:
-        load_mode = active_load_model(actual, speed, inputs, state.load_mode)
-    if load_mode == BY_NETWORK:
-        tangent = network_tangent(actual.networks, angle, speed, inputs.screen == 1.0)
+    load_mode, tangent = network_now(actual, inputs, speed, state)
     train = Train(connection, tables, inputs, actual, load_mode, tangent)
     crank = linkage_crank(speed, state, actual, tables)
     load = resist_as(load_mode, tangent, crank, actual, inputs)
-    # 5 motor and load together to the next tick
+    # 4 motor and load together to the next tick
     joint, play = join(motion, crank, load, train, state.play)
     after, memory = move(joint, load, train, state)
     seen = read_current(motion.current, state.noise, actual.sensors)
-    shown = Seen(seen.current_a, contact.shown, memory.mode, state)
-    outputs = measured(motion, crank, load, shown, train)
-    # 6 slow states
+    outputs = measured(motion, crank, load, Seen(seen.current_a, contact.shown, memory.mode, state), train)
+    # 5 slow states
     reached = within_turn(angle + after.turned / actual.motor.gear_ratio)
-    there = Reached(motion, after, within_turn(reached + play.ahead_rad))
-    slow = slow_after(crank, there, train, state, parameters)
-    # 7 guard
+    slow = slow_after(crank, Reached(motion, after, within_turn(reached + play.ahead_rad)), train, state, parameters)
+    # 6 guard
     following = State(
         current_a=without_denormals(after.current),
         motor_speed_rad_s=without_denormals(after.speed),

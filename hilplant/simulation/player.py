@@ -30,7 +30,7 @@ _RELAYS = frozenset((INPUT_INDEX["relay_on"], INPUT_INDEX["relay_fast"]))
 _MODE = FIRST_STATUS + STATUS_INDEX["mode"]
 
 
-class Step(NamedTuple):
+class InputChange(NamedTuple):
     """From a step after time 0 on, an input has a value."""
 
     step: int
@@ -144,11 +144,11 @@ def commands_relays(scenario: Scenario) -> bool:
     return bool(_RELAYS & set(scenario.entries))
 
 
-def changes(scenario: Scenario, bench: Bench) -> Iterator[Step]:
+def changes(scenario: Scenario, bench: Bench) -> Iterator[InputChange]:
     """Give what a scenario sets: each input where it is another than in the step before."""
     for index in scenario.entries:
         column = scenario.column(index, bench.input_row, bench.step_ns)
         changed = np.ones(column.shape, np.bool_)
         changed[1:] = column[1:] != column[:-1]
         for step in np.flatnonzero(changed).tolist():
-            yield Step(step, index, float(column[step]))
+            yield InputChange(step, index, float(column[step]))

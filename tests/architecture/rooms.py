@@ -21,7 +21,8 @@ PAGE = ROOT / "docs" / "architecture.md"
 
 #: From the bottom to the top: an arrow points to a room of the same layer or of a lower one.
 LAYERS: dict[str, str] = {
-    "ground": "units failure arrays jit progress atomic_write resources extras declaration signals vcan companion",
+    "ground": "units failure arrays inlined jit progress atomic_write resources extras declaration signals"
+    " vcan companion",
     "physics": "models mechanics control",
     "borders": "checked_yaml bus verdicts faults web",
     "bench": "bench",
@@ -39,7 +40,8 @@ ARROWS: dict[str, str] = {
     "units": "",
     "failure": "",
     "arrays": "",
-    "jit": "",
+    "inlined": "",
+    "jit": "inlined",
     "declaration": "",
     "progress": "",
     "vcan": "",
@@ -70,7 +72,7 @@ ARROWS: dict[str, str] = {
     "motor_bench": f"{_OFFLINE} measurements",
     "identify": f"{_OFFLINE} simulation measurements motor_bench",
     "train": f"{_OFFLINE} simulation",
-    "plots": f"{_OFFLINE} simulation identify train",
+    "plots": f"{_OFFLINE} measurements simulation identify train",
     "reports": f"{_OFFLINE} identify train plots",
     "perf": f"{_OFFLINE} simulation c_source",
     "testing": f"{_OFFLINE} channel simulation plots",

@@ -27,7 +27,6 @@ PATIENCE_S = 40.0
 START_PATIENCE_S = 150.0
 HILPLANT = (sys.executable, "-m", "hilplant")
 
-
 #: Off at the edge of the park switch, as an ECU does it: slow until the contact has opened and closed again.
 PARK = """
 cangen "$0" -g 50 -I 120 -L 2 -D 0100 & slow=$!
@@ -38,7 +37,6 @@ stdbuf -oL candump -L "$0,201:7FF" | while read -r line; do
     esac
 done
 """
-
 
 #: Sends a frame by cansend every 0.1 s, and at once each one that comes by standard input; ends with it.
 COMMANDER = """

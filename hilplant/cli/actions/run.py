@@ -50,12 +50,8 @@ def run_daemon(  # noqa: PLR0913, PLR0917
     scenario: Played | None = None,
 ) -> Summary:
     """Serve a bench and say on the terminal how it started and how it ended."""
-    bench = load_bench(name)
     played = None if scenario is None else load_scenario(scenario.path)
-    if played is not None:
-        bench = replace(bench, state_row=initial_state(bench.parameters, bench.initial | played.initial))
-    if channel is not None:
-        bench = replace(bench, interface={**bench.interface, "channel": channel})
+    bench = _loaded(name, channel, played)
     seat: LoopSeat | OwnLoopSeat | None = None
     if inside is not None:
         bench, seat = seated(bench, inside)
@@ -90,6 +86,16 @@ def run_daemon(  # noqa: PLR0913, PLR0917
         if seat is not None and summary.controller_stopped:
             voice.say(f"{seat.stopped}; relays opened", err=True)
     return summary
+
+
+def _loaded(name: str, channel: str | None, played: Scenario | None) -> Bench:
+    """Return the bench, on another channel if one is given, at the scenario's start if one is played."""
+    bench = load_bench(name)
+    if played is not None:
+        bench = replace(bench, state_row=initial_state(bench.parameters, bench.initial | played.initial))
+    if channel is not None:
+        bench = replace(bench, interface={**bench.interface, "channel": channel})
+    return bench
 
 
 def _want(seat: "LoopSeat | OwnLoopSeat", speed_rad_s: float) -> None:

@@ -2,7 +2,7 @@
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -20,6 +20,9 @@ from hilplant.cli.options import (
 )
 from hilplant.cli.page_option import LOGS, Browser, PageAddress, PageLogs, Stream, WithPage, page_options
 from hilplant.failure import Failure
+
+if TYPE_CHECKING:
+    from hilplant.recording.beside_loop import RecordTo
 
 app = command_app()
 
@@ -60,16 +63,11 @@ def run(  # noqa: PLR0913, PLR0917
     """
     from hilplant.cli.actions.run import Played, run_daemon
     from hilplant.ecu.loop_controller import Inside
-    from hilplant.recording.beside_loop import RecordTo
-    from hilplant.recording.rotation import Rotation
     from hilplant.runtime.server import StopRequest, ended_by_signals
 
     if reference is not None and controller is None:
         raise Failure("--reference is what a controller is asked for: give --controller NAME with it")
-    rotation = Rotation.parse(rotate, keep)
-    if rotation.in_parts and record is None:
-        raise Failure("--rotate is about a recording: give --record FILE with it")
-    to = None if record is None else RecordTo(record, rotation)
+    to = _record_to(record, rotate, keep)
     claim(json_file)
     inside = None if controller is None else Inside(controller, reference or "3.14", budget_us)
     played = None if scenario is None else Played(scenario, verdicts)
@@ -79,3 +77,14 @@ def run(  # noqa: PLR0913, PLR0917
     with ended_by_signals(StopRequest()):  # one more Ctrl-C shall not cost the figures
         write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))
     raise typer.Exit(0 if summary.is_sound else 1)
+
+
+def _record_to(record: Path | None, rotate: str | None, keep: int | None) -> "RecordTo | None":
+    """Return where to record and in which parts."""
+    from hilplant.recording.beside_loop import RecordTo
+    from hilplant.recording.rotation import Rotation
+
+    rotation = Rotation.parse(rotate, keep)
+    if rotation.in_parts and record is None:
+        raise Failure("--rotate is about a recording: give --record FILE with it")
+    return None if record is None else RecordTo(record, rotation)
