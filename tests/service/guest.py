@@ -108,7 +108,7 @@ def replayed(name: str) -> str:
 
 
 def becomes_ready() -> str:
-    settings(PATIENT, "--rotate 8s --keep 4")
+    settings(PATIENT, "--rotate 8s --keep 100")
     began_s = time.monotonic()
     run("systemctl", "start", UNIT)
     took_s = time.monotonic() - began_s
@@ -163,7 +163,7 @@ def hang_is_restarted() -> str:
 
 
 def ticks_that_lose_time_do_not_feed() -> str:
-    settings("default", "--rotate 8s --keep 4")
+    settings("default", "--rotate 8s --keep 100")
     run("systemctl", "reset-failed", UNIT)
     run("systemctl", "stop", UNIT, check=False)
     since = run("date", "+%Y-%m-%d %H:%M:%S")
@@ -177,7 +177,7 @@ def ticks_that_lose_time_do_not_feed() -> str:
         hog.wait()
     run("systemctl", "stop", UNIT, check=False)
     run("systemctl", "reset-failed", UNIT)
-    settings(PATIENT, "--rotate 8s --keep 4")
+    settings(PATIENT, "--rotate 8s --keep 100")
     run("systemctl", "start", UNIT)
     daemon = pid()
     hog = subprocess.Popen([sys.executable, "-c", HOG])
