@@ -33,7 +33,7 @@ class ControllerSettings(Checked):
     stall_current_a: Positive = Field(default=10.0, description="current from which the motor counts as stalled")
     stall_s: Positive = Field(default=0.5, description="how long that current must flow")
     warm_stall_current_a: Positive = Field(
-        default=5.0, description="current from which a motor counts as stalled that draws it without a break"
+        default=5.5, description="current from which a motor counts as stalled that draws it without a break"
     )
     warm_stall_s: Positive = Field(default=4.0, description="how long that current must flow without a break")
     brown_out_v: NotNegative = Field(default=6.0, description="supply voltage below which the relays go off")

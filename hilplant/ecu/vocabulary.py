@@ -84,7 +84,7 @@ class RelaySettings(NamedTuple):
     bounce_window_s: float = 1.0
     stall_current_a: float = 10.0
     stall_s: float = 0.5
-    warm_stall_current_a: float = 5.0
+    warm_stall_current_a: float = 5.5
     warm_stall_s: float = 4.0
     brown_out_v: float = 6.0
     resume_v: float = 8.0

@@ -187,7 +187,7 @@ def test_a_blocked_wiper_is_released_tried_again_and_locked_out_until_the_driver
 
 
 def test_a_blocked_wiper_without_a_measured_current_is_found_by_its_time(light):
-    settings = ClosedLoop(light).settings._replace(stall_current_a=1e9)
+    settings = ClosedLoop(light).settings._replace(stall_current_a=1e9, warm_stall_current_a=1e9)
     car = ClosedLoop(light, settings)
     drive_until(car, 0.4, SLOW)
     car.inputs[BRAKE] = 1000.0

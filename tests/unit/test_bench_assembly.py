@@ -16,7 +16,7 @@ from hilplant.models.records import Parameters, State
 from hilplant.models.row import pack, unpack
 from hilplant.models.tables import LEFT_LIFT, RIGHT_LIFT, channels
 from hilplant.resources import named, shipped
-from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUTS, PUBLISHED, PUBLISHED_INDEX
+from hilplant.signals import ECU_TX, INPUT_INDEX, INPUTS, OUTPUTS, PUBLISHED, PUBLISHED_INDEX
 
 BENCHES = sorted(path.stem for path in shipped("config", "benches").glob("*.yaml"))
 
@@ -178,8 +178,10 @@ bus:
 
 def test_the_two_sides_understand_each_other(bench: Bench) -> None:
     ecu = bench.ecu_side()
-    inputs = [1.0, 1.0, 12.345, 1.0, 33.33, 0.0, -1.0, 0.37, 1.5, 0.5, 0.0, 2.25]
-    heard = dict(zip([*INPUT_INDEX], inputs, strict=True))
+    numbers = {"supply_v": 12.345, "vehicle_speed_m_s": 33.33, "left_screen": -1.0, "right_screen": 0.37}
+    heard = {signal.name: numbers.get(signal.name, min(signal.default + 0.5, signal.maximum)) for signal in ECU_TX}
+    heard |= {signal.name: signal.maximum for signal in ECU_TX if signal.kind != "real" and signal.name not in numbers}
+    inputs = [heard[signal.name] for signal in ECU_TX]
     for sent, received in zip(ecu.send, bench.receive, strict=True):
         assert (sent.name, sent.identifier) == (received.name, received.identifier)
         payload, limited = sent.encode(inputs)
