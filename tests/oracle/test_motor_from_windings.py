@@ -70,6 +70,8 @@ def test_the_measured_sets_lie_where_the_documentation_says():
     ratios = []
     for path in shipped("config", "motors").glob("*.yaml"):
         motor = MotorFile.model_validate(yaml.safe_load(path.read_text()))
+        if motor.status == "assumed":  # was never measured
+            continue
         ratios.append(motor.fast.constant_v_s / motor.slow.constant_v_s)
     assert (min(ratios), max(ratios)) == pytest.approx((0.66, 0.75), abs=0.005)
 
