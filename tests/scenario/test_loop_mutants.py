@@ -68,6 +68,9 @@ class Rows:
     def write_frame(self, *_: object) -> None:
         """Frames are seen at the interface."""
 
+    def note_late(self, late_us: int) -> None:
+        """Lateness is counted by the row."""
+
 
 class CountedFeeds(Watchdog):
     """A watchdog that systemd would wait for every 300 ms."""

@@ -1,7 +1,7 @@
 """What `hilplant run` does: a bench on its interface, with a recorder beside it when one is asked for."""
 
 from collections.abc import Callable
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -11,13 +11,13 @@ from hilplant.bench import Bench, load_bench
 from hilplant.bench.assembly import initial_state
 from hilplant.bus.mapping import NO_CHOICE
 from hilplant.channel.beside_loop import announced
-from hilplant.cli.actions.live_judge import Verdict, judging
 from hilplant.cli.voice import Voice
 from hilplant.ecu.loop_controller import Inside, seated
 from hilplant.failure import Failure
 from hilplant.operator_page.beside_run import PageOptions, page_beside
 from hilplant.recording.beside_loop import RecordTo, recording
 from hilplant.runtime.loop import Loop
+from hilplant.runtime.ring import Ring
 from hilplant.runtime.scheduling import Privilege
 from hilplant.runtime.server import StopRequest, Summary, ended_by_signals, serve
 from hilplant.simulation.player import ScenarioPlayer
@@ -28,6 +28,7 @@ from hilplant.units import MILLISECOND_NS
 _NO_FAULTS = ("tick", "overruns", "worst_latency_us")
 
 if TYPE_CHECKING:
+    from hilplant.cli.actions.live_judge import Verdict
     from hilplant.control.own import OwnLoopSeat
     from hilplant.control.seat import LoopSeat
 
@@ -70,13 +71,11 @@ def run_daemon(  # noqa: PLR0913, PLR0917
                 if played is None:
                     summary = serve(bench, seconds, ring, stop, on_start, prepare)
                 else:
-                    judges = played.expect and scenario is not None and scenario.judged
-                    judge = judging(name, played.path, ring, bench.loop.cpu) if judges else nullcontext(Verdict())
-                    with judge as verdict:
+                    with _judge(name, scenario, played, ring, bench.loop.cpu) as verdict:
                         play = partial(_play, played, bench, stop, prepare)
                         summary = serve(bench, seconds, ring, stop, on_start, play)
                         ring.close_writer()
-                    summary.scenario_ruling = verdict.ruling
+                    summary.scenario_ruling = "" if verdict is None else verdict.ruling
         except Failure as failure:
             if summary is None:
                 raise
@@ -96,6 +95,17 @@ def _loaded(name: str, channel: str | None, played: Scenario | None) -> Bench:
     if channel is not None:
         bench = replace(bench, interface={**bench.interface, "channel": channel})
     return bench
+
+
+def _judge(
+    name: str, scenario: Played | None, played: Scenario, ring: Ring, loop_cpu: int | None
+) -> "AbstractContextManager[Verdict | None]":
+    """Return what judges beside the loop, if there is anything to judge."""
+    if scenario is None or not scenario.judged or not played.expect:
+        return nullcontext()
+    from hilplant.cli.actions.live_judge import judging
+
+    return judging(name, played.path, ring, loop_cpu)
 
 
 def _want(seat: "LoopSeat | OwnLoopSeat", speed_rad_s: float) -> None:

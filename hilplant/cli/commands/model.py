@@ -20,7 +20,7 @@ def model(
     ] = "",
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="open the page in the browser")] = True,
 ) -> None:
-    """Describe, see, check and identify a wiper on a page, and make a bench of it.
+    """Describe, check and identify a wiper on a page; make a bench.
 
     Without BENCH the printed defaults of the thesis' Figure 8-3. Ends on Ctrl-C; what was not saved is lost then.
     """

@@ -134,7 +134,7 @@ def test_a_blf_tells_the_time_of_day(record_run: Record, tmp_path: Path) -> None
 
 
 def test_another_ending_is_refused_with_the_possible_ones(record_run: Record, tmp_path: Path) -> None:
-    with pytest.raises(Failure, match=r"run.xlsx: .* .mf4, .csv, .parquet, .blf, .asc"):
+    with pytest.raises(Failure, match=r"run.xlsx: .* .mf4, .csv, .parquet, .mcap, .blf, .asc"):
         export(record_run(10), tmp_path / "run.xlsx")
 
 

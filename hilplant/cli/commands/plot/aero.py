@@ -10,7 +10,7 @@ app = command_app()
 
 @app.command(epilog="Example: hilplant plot aero spoiler aero.png")
 def aero(bench: BenchName, out: Picture, table: Table = None) -> None:
-    """Draw drag and lift of the blades over the vehicle's speed.
+    """Draw drag and lift of the blades over the speed.
 
     The bench's beside those of section 4.5 with and without a spoiler, Figure 4-30.
     """

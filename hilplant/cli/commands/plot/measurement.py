@@ -10,7 +10,7 @@ app = command_app()
 
 @app.command(epilog="Example: hilplant plot measurement rig.csv@wet rig.png")
 def measurement(data: DataName, out: Picture, columns: Columns = "", frames: Frames = None) -> None:
-    """Draw a measurement: voltage, current, park steps, speed of each turn.
+    """Draw a measurement: voltage, current, park steps.
 
     As identification takes it, Figure 5-5.
     """

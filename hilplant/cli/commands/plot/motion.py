@@ -23,7 +23,7 @@ def motion(  # noqa: PLR0913, PLR0917
     ] = None,
     table: Table = None,
 ) -> None:
-    """Draw position, velocity and acceleration of bodies over time.
+    """Draw how bodies move over time.
 
     The planar kinematics of 4.2.4 at an even speed of the crank; --table has every body.
     """

@@ -14,7 +14,7 @@ app = command_app()
 
 @app.command(epilog="Example: hilplant plot recording run.hilrec run.png")
 def recording(recording: Annotated[Path, typer.Argument(help="what run --record has written")], out: Picture) -> None:
-    """Draw a recording: voltage, current, speed, arms, switches."""
+    """Draw a recording: voltage, current, arms, switches."""
     need("recording")
     from hilplant.plots.recording import plot_recording as draw
 

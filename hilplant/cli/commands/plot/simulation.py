@@ -17,7 +17,7 @@ def simulation(
     out: Picture,
     signal: Annotated[list[str] | None, typer.Option(help="a panel for this signal; repeatable")] = None,
 ) -> None:
-    """Draw what `simulate` has written: voltage, current, angle, torque, speed."""
+    """Draw what `simulate` has written, over time."""
     from hilplant.plots.simulated import plot_simulated
 
     plot_simulated(result, out, signal or ())

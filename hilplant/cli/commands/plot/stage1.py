@@ -22,7 +22,7 @@ def stage1(  # noqa: PLR0913, PLR0917
     gear_ratio: Annotated[float, typer.Option(min=1.0, help="turns of the motor in one turn of the crank")] = 63.0,
     table: Table = None,
 ) -> None:
-    """Draw stage 1: raw and filtered data, and the transfer function's answer.
+    """Draw stage 1: its data and the transfer function.
 
     For each mode, Figures 5-8 to 5-11.
     """

@@ -10,7 +10,7 @@ app = command_app()
 
 @app.command(epilog="Example: hilplant plot staircase rig.csv@wet stairs.png --table stairs.csv")
 def staircase(data: DataName, out: Picture, columns: Columns = "", frames: Frames = None, table: Table = None) -> None:
-    """Draw the park contact as pulses and as stairs, section 5.2.
+    """Draw the park contact as pulses and as stairs.
 
     Beside a model that is a little slow, slow, and at rest: the error of pulses is least where nothing moves, that of
     stairs is largest there. Figures 5-2 and 5-3.

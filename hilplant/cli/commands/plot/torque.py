@@ -10,7 +10,7 @@ app = command_app()
 
 @app.command(epilog="Example: hilplant plot torque default torque.png")
 def torque(bench: BenchName, out: Picture) -> None:
-    """Draw the torque over the crank angle, dry, tacky and wet."""
+    """Draw the torque over the crank angle by screen."""
     from hilplant.bench import load_bench
     from hilplant.plots.mechanics import plot_torque as draw
 
