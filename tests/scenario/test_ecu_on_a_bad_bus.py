@@ -25,7 +25,13 @@ from hilplant.signals import PUBLISHED_INDEX
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 DATABASE = cantools.database.load_file(shipped("dbc", "wiper.dbc"))
-STALK_OFF = {"Master_Input": "Off", "Intermittent_Switch": 1, "Flick_Wipe": "Released", "Wash": "Released"}
+STALK_OFF = {
+    "Master_Input": "Off",
+    "Intermittent_Switch": 1,
+    "Flick_Wipe": "Released",
+    "Wash": "Released",
+    "Automatic": "Off",
+}
 PARK_PERIOD_MS = 20
 #: All stages, ended from each of them.
 STORY = "0.1:slow,2.5:off,5:fast,9:off,12:i1,17:off,19:flick,22:slow,24:fast,26.5:i2,29:slow,31:off"

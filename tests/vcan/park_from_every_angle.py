@@ -41,7 +41,7 @@ class Bus:
 
     def stalk(self, position: str) -> None:
         """Move the stalk."""
-        signals = {"Master_Input": position, "Intermittent_Switch": 1, "Flick_Wipe": 0, "Wash": 0}
+        signals = {"Master_Input": position, "Intermittent_Switch": 1, "Flick_Wipe": 0, "Wash": 0, "Automatic": 0}
         data = DATABASE.encode_message("StalkCommand", signals)
         frame_id = DATABASE.get_message_by_name("StalkCommand").frame_id
         self._socket.send(struct.pack("=IB3x8s", frame_id, len(data), data))

@@ -83,7 +83,13 @@ class Watcher:
 
 
 def stalk_frame(position: str, interval: int = 1, flick: int = 0) -> str:
-    signals = {"Master_Input": position, "Intermittent_Switch": interval, "Flick_Wipe": flick, "Wash": 0}
+    signals = {
+        "Master_Input": position,
+        "Intermittent_Switch": interval,
+        "Flick_Wipe": flick,
+        "Wash": 0,
+        "Automatic": 0,
+    }
     return f"110#{DATABASE.encode_message('StalkCommand', signals).hex()}"
 
 
