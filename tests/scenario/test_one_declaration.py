@@ -55,7 +55,7 @@ LOAD = (
     ),
     (
         "models/load.py",
-        "from hilplant.models.torque_network import N",
+        "from hilplant.models.torque_network import NETWORK",
         "from hilplant.models.spring import spring\n",
     ),
     ("models/load.py", ')\n\nNONE = LOADS.index("none")', ', "spring"'),
