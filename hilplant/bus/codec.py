@@ -62,7 +62,7 @@ class ReceivedMessage:
     timeout_ns: int = 0
     protection: Protection | None = None
     switches: tuple[int, ...] = ()  # which of `targets` are flags or choices
-    j1939: bool = False  # known by its parameter group, whoever sends it
+    j1939: bool = False  # known by its parameter group, from any sender
 
 
 @dataclass(frozen=True, slots=True)

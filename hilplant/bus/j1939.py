@@ -1,4 +1,4 @@
-"""Identifiers of SAE J1939: the parameter group, whoever sends it with whatever priority (J1939-21, 5.1 and 5.2)."""
+"""Identifiers of SAE J1939: the parameter group, from any sender at any priority (J1939-21, 5.1 and 5.2)."""
 
 from collections.abc import Iterable
 

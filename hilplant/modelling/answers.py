@@ -11,7 +11,7 @@ from hilplant.bench import Bench
 from hilplant.bench.parts import MotorFile
 from hilplant.checked_yaml.checked import text_of
 from hilplant.failure import Failure
-from hilplant.library.shipped_parts import cited, listed
+from hilplant.inventory.shipped_parts import cited, listed
 from hilplant.modelling.linkage_panel import solve, wiper_drawing
 from hilplant.modelling.motor_panel import MotorTest, run_motor
 from hilplant.modelling.park_drawing import circuit_states

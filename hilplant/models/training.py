@@ -1,7 +1,7 @@
 """Whether load and motor are still those for which the networks of a bench were trained.
 
 A fault, wear, heat or a command from beside the run may change any of their parameters. A sum over all of them tells,
-whoever changed them, and without a list that someone could forget to keep.
+by whatever it was changed, and without a list that someone could forget to keep.
 """
 
 from hilplant.jit import compiled

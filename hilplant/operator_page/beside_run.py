@@ -12,7 +12,7 @@ from hilplant.companion import Companion, companion
 from hilplant.extras import need
 from hilplant.operator_page.description import describe
 
-#: Where the stalk's moves go: to the bus, or as lines to whoever has started the page.
+#: Where the stalk's moves go: to the bus, or as lines to the program that started the page.
 STALK_ON_BUS, STALK_AS_LINES, NO_STALK = "bus", "lines", ""
 
 

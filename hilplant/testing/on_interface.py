@@ -34,7 +34,7 @@ from hilplant.units import MILLISECOND_NS, SECOND_NS
 #: How long the server may take to begin: it may have to compile [s].
 _BEGIN_S, _END_S = 600.0, 60.0
 _LOOK_NS = MILLISECOND_NS
-#: Who acts here and comes later than this has spoilt the ticks in between for a verdict [ns].
+#: Who acts here and comes later than this has made the ticks in between unfit for a verdict [ns].
 LATE_NS = 25 * MILLISECOND_NS
 
 
@@ -109,7 +109,7 @@ class _Acting:
     late: list[int] = field(default_factory=list)
 
     def until_it_ends(self, process: subprocess.Popen[bytes]) -> list[int]:
-        """Act until the loop has ended; returns the steps that were spoilt because this end came late."""
+        """Act until the loop has ended; returns the steps that are unfit because this end came late."""
         follower = self._follower(process)
         if follower is None:
             return []

@@ -27,7 +27,7 @@ LAYERS: dict[str, str] = {
     "borders": "checked_yaml bus verdicts faults web",
     "bench": "bench",
     "server": "runtime ecu recording channel",
-    "offline": "library c_source simulation measurements motor_bench identify train",
+    "offline": "inventory c_source simulation measurements motor_bench identify train",
     "results": "plots reports testing perf doctor operator_page demo modelling",
     "thesis": "thesis",
     "top": "cli __init__ __main__",
@@ -65,7 +65,7 @@ ARROWS: dict[str, str] = {
     "channel": (
         "units declaration signals failure extras companion checked_yaml models control faults bench runtime recording"
     ),
-    "library": _OFFLINE,
+    "inventory": _OFFLINE,
     "c_source": _OFFLINE,
     "simulation": _OFFLINE,
     "measurements": _OFFLINE,
@@ -77,7 +77,7 @@ ARROWS: dict[str, str] = {
     "perf": f"{_OFFLINE} simulation c_source",
     "testing": f"{_OFFLINE} channel simulation plots",
     "doctor": "extras jit",
-    "modelling": (f"{_OFFLINE} simulation measurements identify train plots reports library web channel"),
+    "modelling": (f"{_OFFLINE} simulation measurements identify train plots reports inventory web channel"),
     "operator_page": f"{_OFFLINE} simulation channel companion web testing",
     "demo": f"{_OFFLINE} plots channel companion operator_page",
     "thesis": f"{_OFFLINE} simulation measurements motor_bench identify train plots reports perf c_source",

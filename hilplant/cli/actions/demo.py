@@ -41,7 +41,7 @@ def run_demo(seconds: float | None, out: Path) -> None:
 
 
 def run_demo_page(seconds: float | None, page: PageOptions) -> None:
-    """Run the demonstration for whoever sits at its page; nothing is recorded but what is logged there."""
+    """Run the demonstration for the user of its page; nothing is recorded but what is logged there."""
     console = Console()
     console.print(
         "hilplant demo: plant and ECU on an in-memory bus, driven on a page\n"

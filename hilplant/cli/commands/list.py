@@ -22,7 +22,7 @@ def list_parts(
     Without a kind: how many there are of each.
     """
     from hilplant.cli.report import print_report
-    from hilplant.library.shipped_parts import cited, kinds, listed
+    from hilplant.inventory.shipped_parts import cited, kinds, listed
     from hilplant.thesis.text_table import TextTable
 
     if not kind:

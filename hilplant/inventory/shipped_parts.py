@@ -11,7 +11,7 @@ from hilplant.checked_yaml.yaml_reader import Document
 from hilplant.ecu.controller_choice import ENTRY_POINTS
 from hilplant.failure import Failure
 from hilplant.faults.catalogue import BY_NAME
-from hilplant.library.controllers import CONTROLLERS
+from hilplant.inventory.controllers import CONTROLLERS
 from hilplant.resources import shipped
 
 #: Kinds that are folders of `config/`.

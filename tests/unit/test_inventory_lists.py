@@ -10,8 +10,8 @@ from hilplant.cli.main import app
 from hilplant.control.catalogue import catalogue
 from hilplant.failure import Failure
 from hilplant.faults.catalogue import BY_NAME
-from hilplant.library.controllers import CONTROLLERS
-from hilplant.library.shipped_parts import FOLDERS, cited, kinds, listed
+from hilplant.inventory.controllers import CONTROLLERS
+from hilplant.inventory.shipped_parts import FOLDERS, cited, kinds, listed
 from hilplant.models.records import Motor
 from hilplant.resources import shipped
 
