@@ -133,7 +133,7 @@ def test_a_fault_is_found_inserted_listed_and_removed(page: Page) -> None:
     until(lambda: output(page, "measured_current_a") == pytest.approx(0.5 * output(page, "current_a"), rel=0.3))
     page.locator("#faults-there button").click()
     expect(page.locator("#faults-there")).to_have_text("none")
-    page.get_by_label("for s").fill("0.5")
+    page.get_by_label("for s").fill("2")
     page.locator("#fault-insert").click()
     expect(page.locator("#faults-there [data-fault=current_sensor_gain]")).to_be_visible()
     expect(page.locator("#faults-there")).to_have_text("none")

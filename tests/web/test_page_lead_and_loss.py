@@ -1,7 +1,6 @@
 """Who leads, and what becomes of what is held when a page, the loop or the whole run goes."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, expect
@@ -59,12 +58,13 @@ def test_nothing_comes_from_anywhere_but_the_loopback(browser: Browser, plant: P
         assert all(url.startswith("http://127.0.0.1:") for url in asked), asked
 
 
-def test_the_banner_is_there_within_a_second_of_the_loops_death(browser: Browser, tmp_path: Path) -> None:
-    with plant_with_page(tmp_path / "logs") as doomed, shown(browser, doomed) as page:
+def test_the_banner_is_there_within_a_second_of_the_loops_death(browser: Browser, plant: PlantWithPage) -> None:
+    """The last test: it ends the plant of this file."""
+    with shown(browser, plant) as page:
         page.evaluate("""() => { new MutationObserver(() => { window.seen = Date.now(); })
             .observe(document.getElementById("banner"), { attributes: true }); }""")
         before = page.evaluate("Date.now()")
-        kill(doomed.loop_pid())
+        kill(plant.loop_pid())
         expect(page.locator("#banner")).to_be_visible()
         until(lambda: page.evaluate("window.seen ?? 0") > 0)
         assert page.evaluate("window.seen") - before < 1000

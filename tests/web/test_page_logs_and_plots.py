@@ -59,12 +59,13 @@ def test_a_recording_of_the_page_replays_bit_for_bit(page: Page, plant: PlantWit
     expect(page.locator("#recording")).to_have_text("recording complete")
     page.locator("#stalk-slow").click()
     expect(page.locator("#stalk-state")).to_have_text("ECU: slow")
+    until(lambda: page.evaluate("hilplant.session.samples.value('current_a')") > 0.5)
     page.locator("#stalk-off").click()
     page.locator("#log-stop").click()
     expect(page.locator("#log-state")).not_to_have_text("recording")
     path = plant.logs / "drive.hilrec"
     assert replay(path).equal
-    assert max(read_recording(path).table(["current_a"]).column(0).to_pylist()) > 0.5
+    assert max(read_recording(path).table(["out.current_a"]).column(0).to_pylist()) > 0.5
 
 
 @pytest.mark.parametrize("name", ["../outside.csv", "/tmp/outside.csv", "a/b.csv", "..", ".hidden.csv", "edge.txt", ""])
@@ -128,7 +129,7 @@ def test_a_hidden_page_is_sent_nothing(page: Page) -> None:
         window.heard = 0; hilplant.session.link.addEventListener("data", () => { window.heard += 1; });
         window.pretend = true; document.dispatchEvent(new Event("visibilitychange"));
     }""")
-    page.wait_for_timeout(500)
+    page.wait_for_timeout(2000)  # what was on its way
     heard, draws = page.evaluate("[window.heard, hilplant.plots.stats.draws]")
     page.wait_for_timeout(1500)
     assert page.evaluate("[window.heard, hilplant.plots.stats.draws]") == [heard, draws]

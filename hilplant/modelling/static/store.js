@@ -4,6 +4,11 @@ import { api } from "/shared/access.js";
 const key = (location) => location.join(".");
 
 class Store extends EventTarget {
+  constructor() {
+    super();
+    this.done = Promise.resolve(true);
+  }
+
   async load() {
     this.schema = await api("schema", {});
     this.take(await api("model"));
@@ -14,8 +19,14 @@ class Store extends EventTarget {
     this.dispatchEvent(new Event("changed"));
   }
 
-  // Ask for a change; what the server refuses is said, and the widgets show what holds.
-  async change(path, body = {}) {
+  // Ask for a change after those that are under way: each is made to the version that the one before gave.
+  change(path, body = {}) {
+    this.done = this.done.then(() => this.send(path, body));
+    return this.done;
+  }
+
+  // What the server refuses is said, and the widgets show what holds.
+  async send(path, body) {
     try {
       this.take(await api(path, { version: this.state.version, ...body }));
       this.say("");
