@@ -33,8 +33,8 @@ from hilplant.recording.replay import replay
 from hilplant.recording.rotation import Rotation
 from hilplant.recording.writer import RecordingWriter
 from hilplant.runtime.clock import VirtualClock
-from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
+from hilplant.runtime.row import ROW_WIDTH
 from hilplant.runtime.server import build_loop
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 

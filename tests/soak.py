@@ -26,8 +26,8 @@ from hilplant.ecu.vocabulary import Master, Stalk
 from hilplant.models.records import Parameters
 from hilplant.models.row import unpack
 from hilplant.runtime.clock import VirtualClock
-from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
+from hilplant.runtime.row import ROW_WIDTH
 from hilplant.runtime.server import build_loop
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS
 from hilplant.units import MILLISECOND_NS, SECOND_NS

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from hilplant.bus.frame import Frame
-from hilplant.bus.frame_faults import FrameFault, Passing
+from hilplant.bus.frame_fault import FrameFault, Passing
 from hilplant.bus.interface import SendResult, Transport
 
 

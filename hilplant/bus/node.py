@@ -7,11 +7,11 @@ nothing that happens on the bus leaves as an exception.
 import math
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.frame import Frame
 from hilplant.bus.j1939 import Groups
+from hilplant.bus.link import LinkSettings, Reopening
 from hilplant.bus.message_state import Incoming, Outgoing, value_fault
 from hilplant.bus.protection import FrameCheck
 from hilplant.bus.transport import SendResult, Transport
@@ -29,20 +29,6 @@ _CAUSES = {
     FrameCheck.WRONG_COUNTER: "wrong_counter",
     FrameCheck.NOT_VALID: "e2e_not_valid",
 }
-
-
-@dataclass(frozen=True, slots=True)
-class LinkSettings:
-    """How a node treats its interface.
-
-    `others` are the identifiers, with whether they are extended, of messages that are known to pass between others.
-    """
-
-    frames_per_tick: int = 100
-    queue_frames: int = 64
-    reopen_first_ns: int = 100 * MILLISECOND_NS
-    reopen_longest_ns: int = 2000 * MILLISECOND_NS
-    others: frozenset[tuple[int, bool]] = frozenset()
 
 
 class Node:
@@ -77,10 +63,8 @@ class Node:
         self._own = {(m.identifier, m.extended) for m in sent}
         self._emptied_ns: int | None = None  # when nothing was left to be received: what comes later arrived later
         self._pending: deque[Frame] = deque()
-        self._was_up = True
-        self._reopen_ns = 0
+        self._reopening = Reopening(transport, settings)
         self._census_ns = 0
-        self._reopen_pause_ns = settings.reopen_first_ns
 
     def receive(self, now_ns: int, shed: bool = False) -> None:
         """Take in what has arrived since the last call, then judge what stayed away.
@@ -88,9 +72,9 @@ class Node:
         At most `frames_per_tick` frames are taken, a quarter of them to `shed` load; the rest waits in the interface.
         """
         if self._transport.up:
-            self._was_up = True
-        else:
-            self._reopen(now_ns)
+            self._reopening.was_up = True
+        elif self._reopening.goes_down(now_ns):
+            self._count("link_down")
         limit = self._settings.frames_per_tick
         limit = max(1, limit // 4) if shed else limit
         arrivals = self._arrivals(limit, now_ns)
@@ -250,18 +234,6 @@ class Node:
             else:
                 pending.clear()  # old states are worth nothing once the link is back
                 return
-
-    def _reopen(self, now_ns: int) -> None:
-        if self._was_up:
-            self._was_up = False
-            self._count("link_down")
-            self._reopen_pause_ns = self._settings.reopen_first_ns
-            self._reopen_ns = now_ns + self._reopen_pause_ns
-        elif now_ns >= self._reopen_ns:
-            if self._transport.reopen():
-                return
-            self._reopen_pause_ns = min(2 * self._reopen_pause_ns, self._settings.reopen_longest_ns)
-            self._reopen_ns = now_ns + self._reopen_pause_ns
 
     def _count(self, cause: str) -> None:
         self.counts[STATUS_INDEX[cause]] += 1

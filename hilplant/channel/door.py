@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from hilplant.channel.events import PresentFaults, name_of, reason
 from hilplant.channel.requests import LEASE_S, LINE_BYTES, commands_of, parse
 from hilplant.channel.run_files import PROTOCOL, column_of, columns
 from hilplant.failure import Failure
@@ -41,7 +42,7 @@ class Door:
         self._writers: dict[int, asyncio.StreamWriter] = {}
         self._recorder: Any = None
         self._subscriptions: set[asyncio.Task[None]] = set()
-        self._faults: list[dict[str, Any]] = []
+        self._faults = PresentFaults()
 
     @property
     def ended(self) -> bool:
@@ -65,23 +66,12 @@ class Door:
         if answers is not None:
             answers.append(event)
         elif event.outcome == c.LEASE_OVER and event.client in self._writers:
-            told = {"event": "released", "name": _name(event), "tick": event.tick, "why": "lease over"}
+            told = {"event": "released", "name": name_of(event), "tick": event.tick, "why": "lease over"}
             _send(self._writers[event.client], told)
         if event.kind in (c.COMES, c.GOES):
-            self._note_fault(event)
-
-    def _note_fault(self, event: ChannelCommand) -> None:
-        """Keep in mind which faults are there, and tell who has inserted this one."""
-        who = {"name": _name(event), "owner": c.OWNERS[event.owner], "client": event.client}
-        if event.kind == c.COMES:
-            self._faults.append(who | {"tick": event.tick})
-        else:
-            gone = next((each for each in self._faults if {**each, **who} == each), None)
-            if gone is not None:
-                self._faults.remove(gone)
-        if event.owner == c.HAND and event.client in self._writers:
-            told = {"event": "fault", "name": who["name"], "there": event.kind == c.COMES, "tick": event.tick}
-            _send(self._writers[event.client], told)
+            told = self._faults.note(event)
+            if event.owner == c.HAND and event.client in self._writers:
+                _send(self._writers[event.client], told)
 
     async def greet(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         """Serve one client until it goes; whatever it sends, the others and the loop are not concerned."""
@@ -138,7 +128,7 @@ class Door:
                 await asyncio.sleep(_LOOK_S)
         finally:
             del self._waiting[key]
-        refused = [_why(each) for each in answers if each.outcome]
+        refused = [reason(each) for each in answers if each.outcome]
         return {"tick": answers[0].tick} | ({"error": "; ".join(refused)} if refused else {})
 
     async def _do_hello(self, client: int, request: dict[str, Any]) -> dict[str, Any]:
@@ -164,7 +154,7 @@ class Door:
             "tick": int(values["tick"]),
             "status": status,
             "owners": owners,
-            "faults": self._faults,
+            "faults": self._faults.listed,
             "clients": len(self._writers),
             "malformed": self.malformed,
             "refused": self.refused,
@@ -223,24 +213,6 @@ class Door:
 
 def _send(writer: asyncio.StreamWriter, answer: dict[str, Any]) -> None:
     writer.write(json.dumps(answer).encode() + b"\n")
-
-
-def _name(event: ChannelCommand) -> str:
-    from hilplant.models.records import PARAMETER_INDEX
-    from hilplant.signals import INPUTS
-
-    if event.kind >= c.FAULT:
-        return event.text.decode(errors="replace")
-    if event.kind == c.PARAMETER:
-        return list(PARAMETER_INDEX)[event.element]
-    return INPUTS[event.element].name if event.kind < c.PARAMETER else ""
-
-
-def _why(event: ChannelCommand) -> str:
-    """Return why something was refused."""
-    if event.outcome == c.REFUSED:
-        return _name(event)
-    return f"{_name(event)}: {c.OUTCOMES[event.outcome]}".lstrip(": ")
 
 
 async def keep(order: dict[str, Any]) -> None:

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 from hilplant.bench.ecu_side import EcuSide
 from hilplant.bus.codec import ReceivedMessage, SentMessage
-from hilplant.bus.node import LinkSettings, Node
+from hilplant.bus.link import LinkSettings
+from hilplant.bus.node import Node
 from hilplant.bus.transport import Transport
 from hilplant.ecu.relay_controller import ControllerState, advance
 from hilplant.ecu.stalk import StalkSource

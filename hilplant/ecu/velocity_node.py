@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.frame import Frame
-from hilplant.bus.node import LinkSettings, Node
+from hilplant.bus.link import LinkSettings
+from hilplant.bus.node import Node
 from hilplant.bus.transport import Transport
 from hilplant.control.own import OwnSeat
 from hilplant.control.records import Command, Measured

@@ -1,7 +1,7 @@
 """The faults of the bus: what becomes of the frames that the plant hears or sends."""
 
 from hilplant.bus import frame_faults as on
-from hilplant.bus.frame_faults import FrameFault
+from hilplant.bus.frame_fault import FrameFault
 from hilplant.faults.fault import FaultDefinition, Quantity
 
 _LATER = Quantity("time_s", 0.0, 10.0, "how long after the first [s]", 0.0)

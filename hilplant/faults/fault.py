@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from hilplant.bus.frame_faults import FrameFault
+from hilplant.bus.frame_fault import FrameFault
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.failure import Failure
 

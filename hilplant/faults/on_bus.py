@@ -8,7 +8,7 @@ from hilplant.bus.bits import places
 from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.database import database_among
 from hilplant.bus.faulty_transport import PlacedFault
-from hilplant.bus.frame_faults import FrameTarget
+from hilplant.bus.frame_fault import FrameTarget
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.failure import Failure
 from hilplant.faults.timing import Course, Inserted

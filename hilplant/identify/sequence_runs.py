@@ -81,7 +81,8 @@ def play_on_bus(
 
     """
     from hilplant.bench import load_bench
-    from hilplant.bus.node import LinkSettings, Node
+    from hilplant.bus.link import LinkSettings
+    from hilplant.bus.node import Node
     from hilplant.bus.transport import open_transport
     from hilplant.runtime.clock import WallClock
     from hilplant.runtime.server import StopRequest, ended_by_signals

@@ -9,7 +9,7 @@ import numpy as np
 from hilplant.bench import Bench
 from hilplant.bus.database import database_among
 from hilplant.runtime.follower import Follower
-from hilplant.runtime.ring import ERROR, EXTENDED, REMOTE, SENT
+from hilplant.runtime.frame_slot import ERROR, EXTENDED, REMOTE, SENT
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 _PERIODS = 200

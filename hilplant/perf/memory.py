@@ -11,8 +11,8 @@ from hilplant.perf.busy_bus import VIRTUAL, Peer, both_ends
 from hilplant.perf.own_process import figures_of, hand_back
 from hilplant.perf.results import Goal, PartResult, Row
 from hilplant.runtime.clock import VirtualClock
-from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
+from hilplant.runtime.row import ROW_WIDTH
 from hilplant.runtime.server import build_loop
 from hilplant.runtime.watchdog import Watchdog
 from hilplant.units import SECOND_NS

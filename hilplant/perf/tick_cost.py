@@ -25,8 +25,8 @@ from hilplant.perf.daemon_run import PRIORITY, chosen_cpu
 from hilplant.perf.results import NotMeasurable, PartResult, Row
 from hilplant.perf.samples import quantile
 from hilplant.runtime.clock import VirtualClock
-from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
+from hilplant.runtime.row import ROW_WIDTH
 from hilplant.runtime.scheduling import real_time
 from hilplant.runtime.server import build_loop
 from hilplant.units import MICROSECOND_NS

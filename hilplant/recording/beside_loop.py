@@ -9,8 +9,8 @@ from typing import NamedTuple, Protocol
 from hilplant.extras import need
 from hilplant.recording.recorded_bench import RecordedBench
 from hilplant.recording.rotation import Rotation
-from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
+from hilplant.runtime.row import ROW_WIDTH
 from hilplant.runtime.server import ServedLoop
 
 

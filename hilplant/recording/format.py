@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.recording.differences import decode, encode
 from hilplant.runtime.commands import COMMAND_DTYPE, KINDS, OUTCOMES, OWNERS, PARAMETER
-from hilplant.runtime.ring import BITRATE_SWITCH, ERROR, EXTENDED, FD, REMOTE, SENT
+from hilplant.runtime.frame_slot import BITRATE_SWITCH, ERROR, EXTENDED, FD, REMOTE, SENT
 from hilplant.signals import INPUTS, OUTPUTS, STATUS
 
 FORMAT_VERSION = "3"

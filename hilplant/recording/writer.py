@@ -12,7 +12,8 @@ from hilplant.recording.metadata import Begin, parameters_of, part_description
 from hilplant.recording.part import Part
 from hilplant.recording.rotation import Rotation, part_path, remove_part
 from hilplant.runtime.commands import APPLIED, COMMAND_DTYPE, PARAMETER
-from hilplant.runtime.ring import FRAME_DTYPE, Ring
+from hilplant.runtime.frame_slot import FRAME_DTYPE
+from hilplant.runtime.ring import Ring
 
 _STATE = slice(2 + len(SIGNAL_COLUMNS), 2 + len(SIGNAL_COLUMNS) + len(STATE_INDEX))
 _NEVER_NS = 1 << 62

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from hilplant.bus.node import Node
 from hilplant.faults.acting import ActingFaults
 from hilplant.models.plant import tick as plant_tick
-from hilplant.models.records import STATE_INDEX
 from hilplant.runtime.clock import Clock
 from hilplant.runtime.commands import BUS, SAFE_STATE, ChannelCommand
 from hilplant.runtime.held_faults import HeldFaults
@@ -24,24 +23,12 @@ from hilplant.runtime.lost_time import LostTime
 from hilplant.runtime.mailbox import Mailbox
 from hilplant.runtime.ownership import Ownership
 from hilplant.runtime.ring import Ring
+from hilplant.runtime.row import FIRST_INPUT, FIRST_OUTPUT, FIRST_OWNER, FIRST_STATE, FIRST_STATUS, ROW_WIDTH
 from hilplant.runtime.watchdog import Watchdog
 from hilplant.signals import INPUTS, MODES, OUTPUT_INDEX, OUTPUTS, STATUS, STATUS_INDEX
 from hilplant.units import MICROSECOND_NS, SECOND_NS
 
 WAITING, RUNNING, SAFE, DEGRADED, STOPPED, BEHIND = (float(index) for index in range(len(MODES)))
-
-#: Where a row's inputs, outputs and status begin.
-FIRST_INPUT = 2
-FIRST_OUTPUT = FIRST_INPUT + len(INPUTS)
-FIRST_STATUS = FIRST_OUTPUT + len(OUTPUTS)
-
-_FIRST_STATE = FIRST_STATUS + len(STATUS)
-
-#: Where the owners of the inputs begin in a row, indices of ``commands.OWNERS``.
-FIRST_OWNER = _FIRST_STATE + len(STATE_INDEX)
-
-#: Width of a row in the ring: tick, deadline_ns, inputs, outputs, status, the plant's state before the tick, owners.
-ROW_WIDTH = FIRST_OWNER + len(INPUTS)
 
 _TICK, _MODE, _OVERRUNS, _WORST, _RING_LOST, _RECORDING = (
     STATUS_INDEX[name] for name in ("tick", "mode", "overruns", "worst_latency_us", "ring_lost", "recording")
@@ -123,8 +110,8 @@ class Loop:
         self.line = np.zeros(ROW_WIDTH)
         self._inputs = self.line[FIRST_INPUT:FIRST_OUTPUT]
         self._outputs = self.line[FIRST_OUTPUT:FIRST_STATUS]
-        self._status = self.line[FIRST_STATUS:_FIRST_STATE]
-        self._before = self.line[_FIRST_STATE:FIRST_OWNER]
+        self._status = self.line[FIRST_STATUS:FIRST_STATE]
+        self._before = self.line[FIRST_STATE:FIRST_OWNER]
         self._owners = self.line[FIRST_OWNER:]
         self._parameters = plant.parameter_row.copy()
         self._ownership = Ownership(node.values, self._owners)

@@ -11,33 +11,15 @@ x86-64 guarantees both. ARM64 guarantees the first only; there, data and head li
 the interpreter apart, more than a store buffer holds: sound in practice, not by the letter.
 """
 
-import struct
-
 import numpy as np
 from numpy.typing import NDArray
 
 from hilplant.bus.frame import Frame
 from hilplant.runtime.commands import COMMAND_DTYPE
+from hilplant.runtime.frame_slot import FRAME, FRAME_BYTES, FRAME_DTYPE
 from hilplant.runtime.lane import Lane
 from hilplant.runtime.mailbox import Mailbox
 from hilplant.runtime.shared_memory import SharedMemory
-
-SENT, EXTENDED, FD, BITRATE_SWITCH, REMOTE, ERROR = (1 << bit for bit in range(6))
-
-#: One frame in the ring; the flags are the constants above.
-FRAME_DTYPE = np.dtype(
-    [
-        ("tick", "<i8"),
-        ("time_ns", "<i8"),
-        ("identifier", "<u4"),
-        ("flags", "u1"),
-        ("length", "u1"),
-        ("spare", "<u2"),
-        ("data", "u1", (64,)),
-    ]
-)
-_FRAME = struct.Struct("<qqIBBH64s")
-_FRAME_BYTES = _FRAME.size
 
 _MAGIC = 0x336E6972_6C6968  # "hilrin3"
 _HEADER_BYTES = 512
@@ -94,7 +76,7 @@ class Ring:
             When the shared memory does not hold it.
         """
         beside = (_EVENTS + _COMMANDS) * COMMAND_DTYPE.itemsize + 4 * rows
-        shared = SharedMemory.create(_HEADER_BYTES + rows * row_width * 8 + frames * _FRAME_BYTES + beside)
+        shared = SharedMemory.create(_HEADER_BYTES + rows * row_width * 8 + frames * FRAME_BYTES + beside)
         np.ndarray((len(shared.bytes),), np.uint8, shared.bytes)[:] = 0  # touch every page now
         words = memoryview(shared.bytes)[:_HEADER_BYTES].cast("q")
         for index, value in ((_WIDTH, row_width), (_ROWS, rows), (_FRAMES, frames), (_MAGIC_AT, _MAGIC)):
@@ -168,8 +150,8 @@ class Ring:
             return
         identifier, data, extended, fd, bitrate_switch, remote, error = frame
         flags = sent | extended << 1 | fd << 2 | bitrate_switch << 3 | remote << 4 | error << 5
-        at = self._frames_at + head % self._frame_count * _FRAME_BYTES
-        _FRAME.pack_into(self._memory, at, tick, time_ns, identifier, flags, len(data), 0, data)
+        at = self._frames_at + head % self._frame_count * FRAME_BYTES
+        FRAME.pack_into(self._memory, at, tick, time_ns, identifier, flags, len(data), 0, data)
         self._frame_head = head + 1
         words[_FRAME_HEAD] = head + 1
 

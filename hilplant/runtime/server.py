@@ -7,7 +7,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 from hilplant.bus.codec import ReceivedMessage, SentMessage
-from hilplant.bus.node import LinkSettings, Node
+from hilplant.bus.link import LinkSettings
+from hilplant.bus.node import Node
 from hilplant.bus.transport import Transport, open_transport
 from hilplant.faults.acting import ActingFaults
 from hilplant.runtime.clock import Clock, WallClock

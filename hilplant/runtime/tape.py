@@ -6,8 +6,8 @@ from numpy.typing import NDArray
 from hilplant.arrays import Floats
 from hilplant.bus.frame import Frame
 from hilplant.runtime.commands import COMMAND_DTYPE, ChannelCommand
-from hilplant.runtime.loop import ROW_WIDTH
-from hilplant.runtime.ring import FRAME_DTYPE
+from hilplant.runtime.frame_slot import FRAME_DTYPE
+from hilplant.runtime.row import ROW_WIDTH
 
 
 class Tape:

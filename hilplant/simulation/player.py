@@ -10,7 +10,8 @@ from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.bus.codec import SentMessage
 from hilplant.bus.faulty_transport import FaultyTransport
-from hilplant.bus.node import LinkSettings, Node
+from hilplant.bus.link import LinkSettings
+from hilplant.bus.node import Node
 from hilplant.faults.on_bus import placed_faults
 from hilplant.faults.player import signal_row
 from hilplant.faults.timing import Course
@@ -18,7 +19,8 @@ from hilplant.faults.written import SIGNALS, inserted
 from hilplant.runtime import commands as c
 from hilplant.runtime.commands import ChannelCommand
 from hilplant.runtime.held_faults import HeldFaults
-from hilplant.runtime.loop import FIRST_OUTPUT, FIRST_STATUS, WAITING
+from hilplant.runtime.loop import WAITING
+from hilplant.runtime.row import FIRST_OUTPUT, FIRST_STATUS
 from hilplant.signals import ECU_TX, INPUT_INDEX, INPUTS, OUTPUTS, STATUS_INDEX
 from hilplant.simulation.scenario import FIRST_COMMAND, Scenario
 from hilplant.units import SECOND_NS

@@ -12,7 +12,8 @@ from hilplant.bus.protection import Checker, FrameCheck, Protection
 from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, STATUS_COLUMNS
 from hilplant.recording.reader import Recording, matrix
 from hilplant.runtime.commands import COMES, GOES, KINDS, START
-from hilplant.runtime.loop import FIRST_OUTPUT, FIRST_STATUS, STOPPED
+from hilplant.runtime.loop import STOPPED
+from hilplant.runtime.row import FIRST_OUTPUT, FIRST_STATUS
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, STATUS_INDEX
 from hilplant.testing.known_signals import DatabaseSignals
 from hilplant.units import SECOND_NS

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from hilplant.arrays import Floats
 from hilplant.runtime import commands as c
 from hilplant.runtime.follower import Follower
+from hilplant.runtime.frame_slot import ERROR, EXTENDED, REMOTE
 from hilplant.runtime.loop import STOPPED
-from hilplant.runtime.ring import ERROR, EXTENDED, REMOTE
 from hilplant.testing.evidence import LOSSES, MODE, checked_frames, column_of, value_of
 from hilplant.testing.known_signals import DatabaseSignals
 from hilplant.testing.scenario_test import Judged

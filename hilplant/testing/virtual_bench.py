@@ -18,8 +18,8 @@ from hilplant.faults.timing import Course
 from hilplant.faults.written import FaultEntry
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.commands import COMES, GOES
-from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.ring import Ring
+from hilplant.runtime.row import ROW_WIDTH
 from hilplant.runtime.server import build_loop
 from hilplant.runtime.tape import Tape
 from hilplant.simulation.player import ScenarioPlayer, commands_relays

@@ -10,7 +10,8 @@ from hilplant.models.plant import simulate_rows
 from hilplant.models.records import Parameters, State
 from hilplant.models.row import pack
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUT_INDEX, OUTPUTS
-from hilplant.thesis.reference import Channels, Reference
+from hilplant.thesis.reference import Reference
+from hilplant.thesis.reference_equations import Channels
 
 #: Wetness of the screen.
 DRY, TACKY, WET = 0.0, 0.5, 1.0

@@ -14,7 +14,8 @@ from hilplant.arrays import Floats
 from hilplant.models.mechanical_records import Obstacles, SideObstacles
 from hilplant.models.records import Arm, Blade, Brush, Friction, Load, Motor, Parameters, ParkSwitch, State
 from hilplant.signals import OUTPUT_INDEX, Inputs
-from hilplant.thesis.reference import Equations, Reference
+from hilplant.thesis.reference import Reference
+from hilplant.thesis.reference_equations import Equations
 from hilplant.thesis.solver import DRY, SCENARIOS, WET, Rows, errors_percent, run_step
 
 MOTOR = Motor(Brush(1.237, 3.148e-3, 4.579e-2), Brush(1.026, 2.571e-3, 3.412e-2), 1.983e-5, 1.582e-4, 0.045, 63.0)

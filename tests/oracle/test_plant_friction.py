@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from hilplant.models.friction import coefficient
 from hilplant.models.records import Friction
-from hilplant.thesis.reference import friction_coefficient
+from hilplant.thesis.reference_equations import friction_coefficient
 
 CURVE = Friction(
     0.3186, 0.1238, 1.996, 19.96, 0.4454, 4.454, 7.578e-3, 0.6756, 6.756, 2.795e-4, 3.456e-3, 2.4, 0.5, 0.6, 0.02

@@ -21,10 +21,10 @@ from hilplant.runtime import commands as c
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.commands import ChannelCommand
 from hilplant.runtime.follower import Follower
-from hilplant.runtime.loop import ROW_WIDTH
 from hilplant.runtime.mailbox import MOST_A_TICK
 from hilplant.runtime.ownership import Ownership
 from hilplant.runtime.ring import Ring
+from hilplant.runtime.row import ROW_WIDTH
 from hilplant.runtime.server import build_loop
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUTS
 

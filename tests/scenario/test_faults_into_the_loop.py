@@ -20,7 +20,7 @@ from hilplant.recording.rotation import Rotation
 from hilplant.recording.writer import RecordingWriter, late_description
 from hilplant.runtime import commands as c
 from hilplant.runtime.held_faults import MOST_FAULTS
-from hilplant.runtime.loop import ROW_WIDTH
+from hilplant.runtime.row import ROW_WIDTH
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUTS, STATUS_INDEX
 
 RESISTANCE = PARAMETER_INDEX["wiring.wire_53.resistance_ohm"]

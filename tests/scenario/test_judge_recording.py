@@ -10,7 +10,7 @@ from junitparser import JUnitXml
 from hilplant.bench import Bench, load_bench
 from hilplant.checked_yaml.problems import BenchError
 from hilplant.failure import Failure
-from hilplant.runtime.loop import ROW_WIDTH
+from hilplant.runtime.row import ROW_WIDTH
 from hilplant.simulation.scenario import load_scenario
 from hilplant.testing.evidence import Evidence
 from hilplant.testing.junit import write_junit

@@ -10,8 +10,9 @@ from hilplant.bench import load_bench
 from hilplant.bus.frame import Frame
 from hilplant.bus.transport import SendResult
 from hilplant.runtime.clock import VirtualClock
-from hilplant.runtime.loop import ROW_WIDTH, RUNNING, SAFE, STOPPED, Loop
+from hilplant.runtime.loop import RUNNING, SAFE, STOPPED, Loop
 from hilplant.runtime.ring import Ring
+from hilplant.runtime.row import ROW_WIDTH
 from hilplant.runtime.server import build_loop
 from hilplant.runtime.watchdog import Watchdog
 from hilplant.signals import INPUT_INDEX, INPUTS, OUTPUTS, STATUS_INDEX

@@ -11,8 +11,8 @@ from hilplant.runtime import commands as c
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.commands import ChannelCommand
 from hilplant.runtime.follower import Follower
-from hilplant.runtime.loop import FIRST_OWNER, ROW_WIDTH
 from hilplant.runtime.ring import Ring
+from hilplant.runtime.row import FIRST_OWNER, ROW_WIDTH
 from hilplant.runtime.server import build_loop
 
 

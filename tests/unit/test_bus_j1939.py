@@ -10,7 +10,8 @@ from hilplant.bench import load_bench
 from hilplant.bench.assembly import Bench
 from hilplant.bus.frame import Frame
 from hilplant.bus.j1939 import destination, parameter_group
-from hilplant.bus.node import LinkSettings, Node
+from hilplant.bus.link import LinkSettings
+from hilplant.bus.node import Node
 from hilplant.failure import Failure
 from hilplant.measurements.files import Origin, read_channels
 from hilplant.measurements.frames import FrameSource

@@ -7,7 +7,8 @@ import pytest
 
 from hilplant.bench import check_bench, load_bench
 from hilplant.bus.frame import Frame
-from hilplant.bus.node import LinkSettings, Node
+from hilplant.bus.link import LinkSettings
+from hilplant.bus.node import Node
 from hilplant.signals import INPUT_INDEX, INPUTS, STATUS_INDEX
 
 DATABASE = """VERSION ""

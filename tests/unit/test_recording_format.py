@@ -12,7 +12,7 @@ from hilplant.recording.adoption import adopted_rows
 from hilplant.recording.format import SIGNAL_COLUMNS, batch, checksum, schema
 from hilplant.recording.recorder import description_now
 from hilplant.recording.writer import RecordingWriter
-from hilplant.runtime.ring import FRAME_DTYPE
+from hilplant.runtime.frame_slot import FRAME_DTYPE
 
 WIDTH = 2 + len(SIGNAL_COLUMNS)
 
