@@ -8,11 +8,11 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from support.channel_process import going_on, wait_until
 
 import hilplant
 from hilplant.channel.run_files import run_folder, run_named
@@ -22,7 +22,6 @@ from hilplant.recording.replay import replay
 from hilplant.runtime.follower import Follower
 
 CHANNEL = f"channel-test-{os.getpid()}"
-
 CLIENT = f"""
 import sys, hilplant
 channel = hilplant.connect("{CHANNEL}")
@@ -38,37 +37,6 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[subprocess.Popen[b
     with going_on(CHANNEL, "--record", str(path)) as process:
         process.recording = path  # type: ignore[attr-defined]
         yield process
-
-
-@contextmanager
-def going_on(channel: str, *options: str) -> Iterator[subprocess.Popen[bytes]]:
-    command = [sys.executable, "-m", "hilplant", "run", "virtual", "--channel", channel, *options]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    wait_until(lambda: process.poll() is not None or _ticks(channel))
-    assert process.poll() is None, process.stdout and process.stdout.read()
-    yield process
-    if process.poll() is None:
-        process.terminate()
-        process.wait(60)
-
-
-def _ticks(channel: str) -> bool:
-    try:
-        follower = Follower(run_named(channel).ring)
-    except (Failure, OSError, ValueError):
-        return False
-    there = follower.latest()[0] > 0
-    follower.close()
-    return bool(there)
-
-
-def wait_until(what: object) -> None:
-    pause = threading.Event()
-    for _ in range(6000):
-        if what():  # type: ignore[operator]
-            return
-        pause.wait(0.02)
-    raise AssertionError("it did not come to pass in two minutes")
 
 
 def supply_of(channel: "hilplant.RunChannel") -> tuple[float, float]:

@@ -6,18 +6,15 @@ Truth is physics: where the crank is, whether the park contact is closed, how ma
 import math
 
 import pytest
+from support.driven_car import FAST, FLICK, INT, OFF, SLOW, WASH, drive_until, park, parked, turn_time_s
 from support.ecu_closed_loop import ClosedLoop
 
 from hilplant.bench import load_bench
-from hilplant.ecu.chart import Phase
 from hilplant.ecu.vocabulary import Fault, Master, Stalk
 from hilplant.signals import INPUT_INDEX
 
-OFF, SLOW, FAST, INT = Stalk(), Stalk(Master.SLOW), Stalk(Master.FAST), Stalk(Master.INTERMITTENT, 2)
-FLICK, WASH = Stalk(flick=True), Stalk(wash=True)
 STALKS = {"off": OFF, "slow": SLOW, "fast": FAST, "intermittent": INT}
 BRAKE, SUPPLY, SCREEN = (INPUT_INDEX[name] for name in ("brake_torque_n_m", "supply_v", "screen"))
-LONGEST_S = 12.0
 
 
 @pytest.fixture(scope="module")
@@ -35,35 +32,6 @@ def loaded():
 @pytest.fixture
 def car(light) -> ClosedLoop:
     return ClosedLoop(light)
-
-
-def parked(car: ClosedLoop) -> bool:
-    """The contact is closed, the crank at rest, the relays are off, nothing is reported."""
-    at_rest = abs(car["crank_speed_rad_s"]) < 1e-6
-    return car["park_contact"] > 0.5 and at_rest and not car.relays.on and car.fault is Fault.NONE
-
-
-def drive_until(car: ClosedLoop, turns: float, stalk: Stalk) -> None:
-    """Drive until the crank has come this many turns from where it started."""
-    while car.turns < turns:
-        car.step(stalk)
-        assert car.time_s < 60.0
-
-
-def park(car: ClosedLoop) -> None:
-    """Put the stalk off and wait until the wiper has come to rest."""
-    begin_s = car.time_s
-    while not parked(car):
-        car.step(OFF)
-        assert car.time_s - begin_s < LONGEST_S, f"{math.degrees(car['crank_angle_rad']):.1f} deg, {car.fault}"
-
-
-def turn_time_s(car: ClosedLoop, stalk: Stalk) -> float:
-    """Return how long a settled turn takes."""
-    drive_until(car, math.ceil(car.turns) + 2.5, stalk)
-    begin_s, turns = car.time_s, car.turns
-    drive_until(car, turns + 2.0, stalk)
-    return (car.time_s - begin_s) / 2.0
 
 
 def test_slow_and_fast_run_at_wiper_speeds_and_fast_is_faster(car):
@@ -166,88 +134,6 @@ def test_intermittent_repeats_with_the_time_of_a_wipe_and_the_pause_of_its_switc
     for start, end, again in zip(starts, ends, starts[1:], strict=False):
         assert 1.3 < end - start < 1.7
         assert again - end == pytest.approx(pause_s, abs=0.0051), "one look of the controller"
-
-
-def test_a_blocked_wiper_is_released_tried_again_and_locked_out_until_the_driver_asks_anew(car):
-    drive_until(car, 0.4, SLOW)
-    car.inputs[BRAKE] = 1000.0
-    begin_s, driven = car.time_s, 0
-    while car.ecu.phase is not Phase.LOCKOUT:
-        car.step(SLOW)
-        driven += car.relays.on
-        assert car.time_s - begin_s < 30.0
-    assert car.fault is Fault.STALL
-    assert driven * car.period_s < 3 * 0.6, "three tries of half a second"
-    car.drive(20.0, SLOW)
-    assert not car.relays.on
-    car.inputs[BRAKE] = 0.0
-    car.drive(0.3, OFF)
-    assert car.relays.on, "off asks anew, and the wiper is on the screen"
-    park(car)
-
-
-def test_a_blocked_wiper_without_a_measured_current_is_found_by_its_time(light):
-    settings = ClosedLoop(light).settings._replace(stall_current_a=1e9, warm_stall_current_a=1e9)
-    car = ClosedLoop(light, settings)
-    drive_until(car, 0.4, SLOW)
-    car.inputs[BRAKE] = 1000.0
-    car.drive(settings.turn_timeout_s, SLOW)
-    assert car.fault is Fault.PARK_NEVER_CLOSES
-    car.inputs[BRAKE] = 0.0
-    park(car)
-
-
-def test_a_dip_of_the_supply_stops_the_wiper_and_it_goes_on_when_the_supply_is_back(car):
-    drive_until(car, 1.4, SLOW)
-    car.inputs[SUPPLY] = 5.0
-    car.drive(1.0, SLOW)
-    assert car.fault is Fault.BROWN_OUT
-    assert not car.relays.on
-    car.inputs[SUPPLY] = 7.0
-    car.drive(2.0, SLOW)
-    assert not car.relays.on, "it waits for 8 V"
-    car.inputs[SUPPLY] = 12.0
-    car.drive(0.6, SLOW)
-    assert car.relays.on
-    car.drive(3.0, SLOW)
-    assert car.fault is Fault.NONE
-    park(car)
-
-
-def test_a_wiper_found_on_the_screen_at_power_on_is_parked(tmp_path):
-    bench = tmp_path / "bench.yaml"
-    bench.write_text("extends: polynomial.yaml\nname: found\ninitial: {crank_angle_rad: 2.0}\n")
-    car = ClosedLoop(load_bench(bench))
-    park(car)
-    assert 0.5 < car.turns < 0.8
-
-
-def test_a_wiper_that_coasts_out_of_the_window_while_the_switch_falls_silent_is_reported_and_parked(tmp_path):
-    bench = tmp_path / "bench.yaml"
-    switch = "{park_angle_deg: 0, window_deg: 4.5, hysteresis_deg: 0.5, bounce_ms: 0}"
-    bench.write_text(f"extends: polynomial.yaml\nname: narrow\nplant:\n  park_switch: {switch}\n")
-    car = ClosedLoop(load_bench(bench), delay_ticks=5)
-    drive_until(car, 1.5, FAST)
-    while car.relays.on:
-        car.step(OFF)
-    car.park_known = False
-    car.drive(1.0, OFF)
-    assert car["park_contact"] < 0.5, "it has coasted out"
-    assert car.fault is Fault.PARK_UNKNOWN
-    car.park_known = True
-    park(car)
-
-
-@pytest.mark.parametrize("bounce_ms", [2, 5, 10])
-def test_a_contact_that_bounces_within_reason_is_no_fault(tmp_path, bounce_ms):
-    bench = tmp_path / "bench.yaml"
-    switch = f"{{park_angle_deg: 0, window_deg: 14, hysteresis_deg: 0.5, bounce_ms: {bounce_ms}}}"
-    bench.write_text(f"extends: polynomial.yaml\nname: bouncing\nplant:\n  park_switch: {switch}\n")
-    car = ClosedLoop(load_bench(bench))
-    for _ in range(5):
-        drive_until(car, car.turns + 1.4, FAST)
-        assert car.fault is Fault.NONE
-        park(car)
 
 
 @pytest.mark.parametrize("circuit", ["mechanical", "depressed"])

@@ -2,75 +2,17 @@
 
 import errno
 import socket
-import struct
-from collections import deque
 from pathlib import Path
 from typing import Any
 
 import pytest
+from support.fake_can_socket import FakeSocket, Kernel, raw
 
 from hilplant.bus import arrival, socketcan
 from hilplant.bus.frame import Frame
 from hilplant.bus.transport import SendResult, Transport, TransportError, open_transport
 
 ARGUMENTS = {"interface": "socketcan", "channel": "can7"}
-
-
-class FakeSocket:
-    """A CAN socket whose next answers are queued: bytes arrive, errors are raised."""
-
-    def __init__(self) -> None:
-        self.incoming: deque[bytes | int] = deque()
-        self.sent: list[bytes] = []
-        self.send_error = self.bind_error = self.pending_error = 0
-        self.options: list[tuple[int, int, int]] = []
-        self.dropped = 0
-        self.stamp_ns: int | None = None
-
-    def setsockopt(self, level: int, name: int, value: int) -> None:
-        self.options.append((level, name, value))
-
-    def bind(self, address: tuple[str]) -> None:
-        if self.bind_error:
-            raise OSError(self.bind_error, "bind")
-
-    def getsockopt(self, level: int, name: int, size: int = 0) -> int | bytes:
-        return struct.pack("=9I", *range(8), self.dropped) if size else self.pending_error
-
-    def recv_into(self, buffer: bytearray) -> int:
-        answer = self.incoming.popleft() if self.incoming else errno.EAGAIN
-        if isinstance(answer, int):
-            raise OSError(answer, "recv")
-        buffer[: len(answer)] = answer
-        return len(answer)
-
-    def recvmsg_into(self, buffers: list[bytearray], size: int) -> tuple[int, list[tuple[int, int, bytes]], int, Any]:
-        count = self.recv_into(buffers[0])
-        stamps = [] if self.stamp_ns is None else [struct.pack("@ll", *divmod(self.stamp_ns, 10**9))]
-        return count, [(socket.SOL_SOCKET, 35, stamp) for stamp in stamps], 0, None
-
-    def send(self, data: bytes) -> int:
-        if self.send_error:
-            raise OSError(self.send_error, "send")
-        self.sent.append(data)
-        return len(data)
-
-    def close(self) -> None:
-        self.incoming.clear()
-
-
-class Kernel:
-    """Hands out sockets; `make` builds the next one."""
-
-    def __init__(self) -> None:
-        self.sockets: list[FakeSocket] = []
-        self.bind_error = self.pending_error = 0
-
-    def __call__(self, *_: int) -> FakeSocket:
-        made = FakeSocket()
-        made.bind_error, made.pending_error = self.bind_error, self.pending_error
-        self.sockets.append(made)
-        return made
 
 
 @pytest.fixture
@@ -87,10 +29,6 @@ def kernel(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Kernel:
 
 def opened(kernel: Kernel) -> tuple[Transport, FakeSocket]:
     return open_transport(ARGUMENTS), kernel.sockets[-1]
-
-
-def raw(identifier: int, data: bytes, flags: int = 0, size: int = 16) -> bytes:
-    return identifier.to_bytes(4, "little") + bytes([len(data), flags, 0, 0]) + data.ljust(size - 8, b"\xee")
 
 
 @pytest.mark.parametrize(

@@ -2,16 +2,14 @@
 
 import gzip
 import importlib
-import struct
-import zlib
 from collections.abc import Callable
 from pathlib import Path
 
 import can
 import can.io.mf4
-import cantools
 import numpy as np
 import pytest
+from support.strangers_logs import AMPERES, COUNT, DBC, HEAD, VOLTS, Row, asc, blf, blf_object, line, rows
 
 from hilplant.failure import Failure
 from hilplant.measurements.channels import Channels
@@ -20,56 +18,14 @@ from hilplant.measurements.files import Origin, read_channels
 from hilplant.measurements.frames import FrameSource, frame_source
 from hilplant.measurements.preparation import Preparation, read_measurement
 
-DBC = """VERSION ""
-BU_: RIG
-BO_ 256 Motor: 4 RIG
- SG_ Amps : 0|16@1- (0.01,0) [-300|300] "A" RIG
- SG_ Volts : 16|16@1+ (0.001,0) [0|40] "V" RIG
-BO_ 257 Switch: 1 RIG
- SG_ Park : 0|1@1+ (1,0) [0|1] "" RIG
-VAL_ 257 Park 1 "closed" 0 "open" ;
-"""
-COUNT = 1500
-TIME_S = np.arange(COUNT) * 1e-3
-VOLTS = np.where(TIME_S < 0.5, 0.0, 12.0)
-AMPERES = np.round(np.where(TIME_S < 0.5, 0.0, 2.0 + 0.5 * np.sin(7.0 * TIME_S)), 2)
-PARK = ((TIME_S % 0.5) < 0.05).astype(float)
 EXACT = Preparation(offset_a=0.0, current_shift_s=0.0, park_inverted=False)
 COLUMNS = "voltage=Motor.Volts,current=Motor.Amps,park=Switch.Park"
-
-Row = tuple[float, int, bytes]
 
 
 @pytest.fixture
 def database(tmp_path: Path) -> Path:
     (tmp_path / "rig.dbc").write_text(DBC)
     return tmp_path / "rig.dbc"
-
-
-def rows(database: Path, late_s: float = 0.0, jitter_s: float = 0.0) -> list[Row]:
-    """Motor on every millisecond, the switch's frames so much later; each frame waits up to `jitter_s` for the bus."""
-    known = cantools.database.load_file(database)
-    rng = np.random.default_rng(1)
-    motor, switch = (known.get_message_by_name(name) for name in ("Motor", "Switch"))
-    found = []
-    for tick, time_s in enumerate(TIME_S.tolist()):
-        data = motor.encode({"Amps": AMPERES[tick], "Volts": VOLTS[tick]})
-        found.append((time_s + rng.uniform(0.0, jitter_s), 256, data))
-        if tick % 20 == 0 or PARK[tick] != PARK[tick - 1]:
-            found.append((time_s + late_s + rng.uniform(0.0, jitter_s), 257, switch.encode({"Park": int(PARK[tick])})))
-    return sorted(found)
-
-
-HEAD = "date Sat Nov 28 11:08:14.349 am 2026\nbase hex  timestamps absolute\ninternal events logged\n"
-
-
-def line(time_s: float, identifier: int, data: bytes, channel: int = 1, way: str = "Rx") -> str:
-    return f"{time_s:11.6f} {channel}  {identifier:<15X} {way:4} d {len(data)} {data.hex(' ').upper()}\n"
-
-
-def asc(path: Path, lines: list[str], head: str = HEAD, encoding: str = "utf-8") -> Path:
-    path.write_text(head + "".join(lines), encoding)
-    return path
 
 
 def read(path: Path, database: Path) -> Channels:
@@ -205,27 +161,6 @@ def test_j1939_is_known_by_its_group(tmp_path: Path) -> None:
     assert {name: channel.values.tolist() for name, channel in channels.items()} == {
         "Cmd@00.On": [1.0], "Cmd@47.On": [2.0], "Cmd.On": [3.0], "Ask@47to21.On": [4.0], "Ask@47to22.On": [5.0],
     }  # fmt: skip
-
-
-def blf_object(row: Row, version: int = 1, size: int | None = None, kind: int = 1) -> bytes:
-    time_s, identifier, data = row
-    body = struct.pack("<HBBL8s", 1, 0, len(data), identifier, data.ljust(8, b"\0"))
-    whole = 32 + len(body)
-    head = struct.pack("<4sHHLL", b"LOBJ", 32, version, whole if size is None else size, kind)
-    return head + struct.pack("<LHHQ", 2, 0, 0, round(time_s * 1e9)) + body
-
-
-def blf(path: Path, objects: list[bytes]) -> Path:
-    content = b""
-    raw = b"".join(objects)
-    for part in (raw[: len(raw) // 2 + 5], raw[len(raw) // 2 + 5 :]):  # an object goes on in the next container
-        packed = struct.pack("<H6xL4x", 2, len(part)) + zlib.compress(part)
-        size = 16 + len(packed)
-        content += struct.pack("<4sHHLL", b"LOBJ", 16, 1, size, 10) + packed + b"\0" * (size % 4)
-    time = struct.pack("<8H", 2026, 11, 6, 28, 11, 8, 14, 349)
-    head = struct.pack("<4sL8BQQLL", b"LOGG", 144, 0, 0, 0, 0, 2, 6, 8, 1, 144 + len(content), 0, len(objects), 0)
-    path.write_bytes((head + time + time).ljust(144, b"\0") + content)
-    return path
 
 
 @pytest.mark.parametrize(("strange", "note"), [

@@ -1,13 +1,12 @@
-"""Linkages from a description: the known kinds again, others, and what is said of descriptions that do not work."""
+"""Linkages from a description: the known kinds again, and others."""
 
-import copy
-import re
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 import yaml
+from support.described_linkages import ON_THE_COUPLER, TRIANGLE, WATT, described
 
 from hilplant.mechanics.assembly import Description, assembly
 from hilplant.mechanics.centre_driven import centre_driven
@@ -20,38 +19,6 @@ from hilplant.mechanics.planar import Body, Driving, Ground, Revolute
 from hilplant.mechanics.slave_driven import slave_driven
 from hilplant.mechanics.transmission import _loosest, check_transmission, followed_turn
 from hilplant.resources import shipped
-
-WATT = """
-points: {O: [0, 0], A: [0.0445, 0.0055], B: [-0.2240, -0.0218], C: [-0.2720, 0.0270],
-         D: [-0.2345, -0.0111], E: [0.2325, -0.0175], F: [0.2030, 0.0270]}
-bodies: {crank: [O, A], coupler: [A, B], left_rocker: [B, C, D], link: [D, E], right_rocker: [E, F]}
-joints:
-  - {revolute: O, bodies: [ground, crank]}
-  - {revolute: A, bodies: [crank, coupler]}
-  - {revolute: B, bodies: [coupler, left_rocker]}
-  - {revolute: C, bodies: [left_rocker, ground]}
-  - {revolute: D, bodies: [left_rocker, link]}
-  - {revolute: E, bodies: [link, right_rocker]}
-  - {revolute: F, bodies: [right_rocker, ground]}
-"""
-#: The link hangs on the coupler instead, between its ends.
-ON_THE_COUPLER = """
-points: {O: [0, 0], A: [0.02, 0.0025], B: [-0.2240, -0.0218], C: [-0.2720, 0.0270],
-         D: [-0.2000, -0.0300], E: [0.2325, -0.0300], F: [0.2030, 0.0600]}
-bodies: {crank: [O, A], coupler: [A, B, D], left_rocker: [B, C], link: [D, E], right_rocker: [E, F]}
-joints:
-  - {revolute: O, bodies: [ground, crank]}
-  - {revolute: A, bodies: [crank, coupler]}
-  - {revolute: B, bodies: [coupler, left_rocker]}
-  - {revolute: C, bodies: [left_rocker, ground]}
-  - {revolute: D, bodies: [coupler, link]}
-  - {revolute: E, bodies: [link, right_rocker]}
-  - {revolute: F, bodies: [right_rocker, ground]}
-"""
-
-
-def described(text: str = WATT, **changes: Any) -> Description:
-    return Description(**{**yaml.safe_load(text), **changes})
 
 
 def of_kind(linkage: Linkage) -> Description:
@@ -132,21 +99,6 @@ def test_a_grounded_frame_is_as_good_as_the_ground() -> None:
     assert np.array_equal(*angles) or np.abs(angles[0] - angles[1]).max() < 1e-12
 
 
-#: A triangle carried by three links (no pair of bodies settles itself), the first of them swung by the crank.
-TRIANGLE = """
-points: {O: [0, 0], A: [0.03, 0.0], B: [0.3, 0.0], C: [0.3, 0.2], G: [0.3, 0.3], P: [0.55, 0.1], Q: [0.6, -0.2]}
-bodies: {crank: [O, A], coupler: [A, B], plate: [B, C, P], left_rocker: [C, G], right_rocker: [P, Q]}
-joints:
-  - {revolute: O, bodies: [ground, crank]}
-  - {revolute: A, bodies: [crank, coupler]}
-  - {revolute: B, bodies: [coupler, plate]}
-  - {revolute: C, bodies: [plate, left_rocker]}
-  - {revolute: G, bodies: [left_rocker, ground]}
-  - {revolute: P, bodies: [plate, right_rocker]}
-  - {revolute: Q, bodies: [right_rocker, ground]}
-"""
-
-
 def test_bodies_that_only_settle_each_other_are_solved() -> None:
     linkage = assembly(described(TRIANGLE))
     assert taken_apart(linkage) == ([], ["coupler", "plate", "left_rocker", "right_rocker"])
@@ -191,137 +143,3 @@ def test_the_measure_without_dyads_is_the_transmission_angle_where_there_is_one(
     mechanism = four_bar.mechanism()
     place = _loosest(four_bar, mechanism, mechanism.design[np.newaxis], ["coupler", "rocker"])
     assert np.degrees(place.transmission_angle_rad) == pytest.approx(from_line_deg, rel=2e-3)
-
-
-def edited(edit: Callable[[dict[str, Any]], Any]) -> Description:
-    data = copy.deepcopy(yaml.safe_load(WATT))
-    edit(data)
-    return Description(**data)
-
-
-#: What is done to the description; what must be said; where the fault lies.
-MISTAKES: list[tuple[Callable[[dict[str, Any]], Any], str, tuple[str | int, ...]]] = [
-    (
-        lambda d: d["joints"].pop(5),
-        "linkage: 3 x 5 bodies - 2 x 6 revolute - 3 x 0 rigid - 3 x 0 grounded = 3 degrees of freedom, must be 1: "
-        "joints are missing",
-        (),
-    ),
-    (
-        lambda d: d["joints"].append({"rigid": "D", "bodies": ["left_rocker", "link"]}),
-        "= -2 degrees of freedom, must be 1: there are too many joints",
-        (),
-    ),
-    (
-        lambda d: (d["bodies"].update(stray=["A", "C"]), d["joints"].append({"ground": "nobody"})),
-        "joint 8: there is no body nobody, only ground, crank, coupler, left_rocker, link, right_rocker, stray",
-        ("joints", 7),
-    ),
-    (lambda d: d["bodies"].update(stray=["A", "C"]), "no row of joints connects stray with the ground", ()),
-    (lambda d: d["bodies"].update(ground=["O", "C"]), "body ground: is there already", ("bodies", "ground")),
-    (lambda d: d["bodies"].update(link=["D"]), "body link: needs two points or more, as [A, B]", ("bodies", "link")),
-    (lambda d: d["bodies"].update(link="DE"), "body link: needs two points or more, as [A, B]", ("bodies", "link")),
-    (
-        lambda d: d["bodies"].update(link=["D", "X"]),
-        "body link: there is no point X, only O, A, B, C, D, E, F",
-        ("bodies", "link"),
-    ),
-    (
-        lambda d: d["points"].update(E=d["points"]["D"]),
-        "body link: D and E are one point, a body needs a length between its points",
-        ("bodies", "link"),
-    ),
-    (lambda d: d["points"].update(X=[1, 1]), "point X: is on no body", ("points_m", "X")),
-    (
-        lambda d: d["joints"].__setitem__(2, {"hinge": "B", "bodies": ["coupler", "left_rocker"]}),
-        "joint 3: must be {revolute: A, bodies: [crank, coupler]}, {rigid: P, bodies: [...]} or {ground: frame}, not",
-        ("joints", 2),
-    ),
-    (
-        lambda d: d["joints"].__setitem__(2, {"revolute": "B", "bodies": ["coupler"]}),
-        "joint 3: needs two bodies or more, each once, not ['coupler']",
-        ("joints", 2),
-    ),
-    (
-        lambda d: d["joints"].__setitem__(2, {"revolute": "B", "bodies": ["crank", "left_rocker"]}),
-        "joint 3: point B is not on body crank, which has O, A",
-        ("joints", 2),
-    ),
-    (
-        lambda d: d["joints"].__setitem__(2, {"revolute": "X", "bodies": ["crank", "left_rocker"]}),
-        "joint 3: there is no point X, only O, A, B, C, D, E, F",
-        ("joints", 2),
-    ),
-    (lambda d: d.update(crank="motor"), "crank: there is no body motor, only crank, coupler,", ("crank",)),
-    (
-        lambda d: d.update(left_rocker="link"),
-        "left_rocker: body link must turn about one point of the ground, not 0",
-        ("left_rocker",),
-    ),
-    (
-        lambda d: d.update(left_rocker="right_rocker"),
-        "crank, left_rocker and right_rocker must be three bodies",
-        ("bodies",),
-    ),
-    (
-        lambda d: d.update(left_rocker="right_rocker", right_rocker="left_rocker"),
-        "left_rocker: its pivot F (x = 0.203 m) must lie to the left of the right rocker's, C (x = -0.272 m)",
-        ("left_rocker",),
-    ),
-    (
-        lambda d: d["points"].update(A=[0.0, 0.09]),
-        "linkage: the crank cannot turn past ",
-        (),
-    ),
-    (
-        lambda d: d["points"].update(E=[0.2030, 0.0005]),
-        "there E between link and right_rocker lies stretched, and its outer pins go farther apart than 0.4377 + ",
-        (),
-    ),
-]
-
-
-@pytest.mark.parametrize(("edit", "said", "part"), MISTAKES)
-def test_a_mistake_is_named_in_one_line_with_its_place(
-    edit: Callable[[dict[str, Any]], Any], said: str, part: tuple[str | int, ...]
-) -> None:
-    with pytest.raises(GeometryError, match=re.escape(said)) as caught:
-        assembly(edited(edit))
-    assert "\n" not in str(caught.value)
-    assert caught.value.part == part
-
-
-def test_a_start_in_a_dead_point_is_refused_with_the_bodies_that_are_loose() -> None:
-    flat = {"E": [-0.2345 + 0.4375 * 0.9, -0.0111 + 0.0381 * 0.9]}  # on the line from D to F
-    with pytest.raises(
-        GeometryError,
-        match="the design position is a dead point: with the crank held, link, right_rocker can still move",
-    ):
-        assembly(described(points={**yaml.safe_load(WATT)["points"], **flat}))
-
-
-def test_bodies_held_twice_while_others_are_loose_are_refused_though_the_count_is_right() -> None:
-    """Two rigid joints too many lock the crank's loop (-2), one joint is missing (+2): in sum one degree of freedom."""
-
-    def edit(data: dict[str, Any]) -> None:
-        data["joints"][2] = {"rigid": "B", "bodies": ["coupler", "left_rocker"]}
-        data["joints"][4] = {"rigid": "D", "bodies": ["left_rocker", "link"]}
-        data["joints"].pop(5)
-
-    with pytest.raises(GeometryError, match="crank held, right_rocker can still move while other bodies are held more"):
-        assembly(edited(edit))
-
-
-def test_a_rocker_that_goes_round_with_the_crank_is_refused() -> None:
-    """A drag link: the ground is the shortest, both ends of the coupler go round."""
-    points = {
-        "O": [0.0, 0.0],
-        "A": [0.0, 0.5],
-        "B": [0.6, 0.5],
-        "C": [0.2, 0.0],
-        "D": [0.3, 0.125],
-        "E": [0.9, 0.3],
-        "F": [1.0, -0.2],
-    }
-    with pytest.raises(GeometryError, match=r"left_rocker does not rock: after one turn .* turned by 360 deg"):
-        assembly(described(points=points))

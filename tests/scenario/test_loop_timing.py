@@ -1,0 +1,82 @@
+"""When the loop sends, and what a late tick leads to, in virtual time."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+from support.loop_rig import (
+    STEP_NS,
+    ListedTransport,
+    Rig,
+)
+
+from hilplant.bus.codec import SentMessage
+from hilplant.runtime.clock import VirtualClock
+from hilplant.runtime.server import StopRequest, build_loop
+from hilplant.runtime.watchdog import Watchdog
+
+
+@pytest.fixture
+def rig() -> Rig:
+    return Rig()
+
+
+def periods_ms(rig: Rig, message: SentMessage, ticks: int) -> list[int]:
+    """Tick on and return the times between the frames of one message [ms]."""
+    times = []
+    for _ in range(ticks):
+        before = len(rig.transport.sent)
+        rig.tick()
+        times += [rig.now for frame in rig.transport.sent[before:] if frame.identifier == message.identifier]
+    return [later - earlier for earlier, later in pairwise(times)]
+
+
+def test_each_message_comes_at_the_cycle_time_of_the_database(rig: Rig) -> None:
+    truth = {"MotorStatus": 10, "ParkSwitch": 20, "Linkage": 10, "PlantStatus": 100, "FrameFaults": 1000}
+    for message in rig.bench.send:
+        if message.name in truth:
+            assert set(periods_ms(rig, message, 3500)) == {truth[message.name]}
+
+
+def test_late_ticks_are_counted_and_their_periods_skipped_not_stretched(rig: Rig) -> None:
+    class LateClock(VirtualClock):
+        def sleep_until_ns(self, deadline_ns: int) -> None:
+            super().sleep_until_ns(deadline_ns)
+            if deadline_ns == 101 * STEP_NS:
+                self.time_ns += 7_300_000
+
+    loop = build_loop(rig.bench, ListedTransport(), LateClock())
+    loop.run(1000, StopRequest(), Watchdog())
+    assert loop.progress.overruns == 7
+    assert loop.progress.ticks == 993
+    assert loop.latency.worst_ns == 7_300_000
+
+
+def test_a_worst_latency_beyond_what_its_frame_carries_is_no_fault(rig: Rig) -> None:
+    rig.loop.latency.add(70_000_000)
+    rig.tick(201)
+    assert rig.counts() == {"worst_latency_us": 70_000}
+
+
+@pytest.mark.parametrize(("policy", "stops"), [("count", False), ("degrade", False), ("stop", True)])
+def test_the_bench_decides_what_a_late_tick_leads_to(rig: Rig, policy: str, stops: bool) -> None:
+    class LateClock(VirtualClock):
+        def sleep_until_ns(self, deadline_ns: int) -> None:
+            super().sleep_until_ns(deadline_ns)
+            if deadline_ns == 101 * STEP_NS:
+                self.time_ns += 5_000_000
+
+    bench = replace(rig.bench, loop=rig.bench.loop.model_copy(update={"on_overrun": policy}))
+    loop = build_loop(bench, ListedTransport(), LateClock())
+    loop.run(1000, StopRequest(), Watchdog())
+    assert loop.progress.stopped_by_overrun is stops
+    assert (loop.progress.ticks < 200) is stops
+
+
+def test_the_count_of_ticks_begins_again_where_its_frame_ends(rig: Rig) -> None:
+    rig.loop.progress.ticks = 2**32 - 60
+    rig.tick(150)
+    ticks = [int.from_bytes(f.data[:4], "little") for f in rig.transport.sent if f.identifier == 0x210]
+    assert ticks[0] == 2**32 - 60
+    assert ticks[-1] == 100 - 60
+    assert rig.counts() == {}

@@ -1,0 +1,172 @@
+"""The daemon on a real SocketCAN that misbehaves: clients that stop, links that go down, queues, floods."""
+
+import json
+import platform
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from support.can_utils import (
+    HILPLANT,
+    PATIENCE_S,
+    SLOW,
+    START_PATIENCE_S,
+    Commander,
+    last,
+    observed,
+    row_before_end,
+    wait_until,
+)
+
+SOFT_TIME = Path(__file__).with_name("soft_time.yaml")
+
+
+@pytest.fixture
+def commander(vcan: str) -> Iterator[Commander]:
+    running = Commander(vcan)
+    yield running
+    running.stop()
+
+
+@pytest.fixture
+def server(spawn: Callable[..., Any], vcan: str, tmp_path: Path) -> Any:
+    """The daemon on the default bench, recording; it has sent its first frames."""
+    daemon = spawn(*HILPLANT, "run", SOFT_TIME, "--record", tmp_path / "run.hilrec")
+    daemon.wait_for("serves on", START_PATIENCE_S)
+    return daemon
+
+
+def test_a_client_that_stops_mid_way_leaves_the_wiper_in_the_safe_state(
+    candump: Any, server: Any, commander: Commander
+) -> None:
+    commander.hold(SLOW)
+    assert wait_until(lambda: last(candump, "MotorStatus")["CrankSpeed"] > 3.0)
+    commander.stop()
+    assert wait_until(lambda: str(last(candump, "PlantStatus")["Mode"]) == "Safe")
+    assert wait_until(lambda: last(candump, "MotorStatus")["TerminalVoltage"] == 0.0)
+    assert wait_until(lambda: abs(last(candump, "MotorStatus")["CrankSpeed"]) < 1e-3)
+    assert wait_until(lambda: last(candump, "LinkFaults")["Timeouts"] >= 1)
+    assert server.end(patience_s=PATIENCE_S) == 0
+
+
+def test_the_link_goes_down_and_up_ten_times_and_the_loop_ticks_on(
+    candump: Any, server: Any, vcan: str, cansend: Callable[[str], None], tmp_path: Path
+) -> None:
+    candump.wait_for(" 210#", count=2)
+    for _ in range(10):
+        subprocess.run(["ip", "link", "set", vcan, "down"], check=True)
+        time.sleep(0.15)
+        subprocess.run(["ip", "link", "set", vcan, "up"], check=True)
+        time.sleep(0.6)
+    cansend(SLOW)
+    assert server.process.poll() is None
+    assert server.end(patience_s=PATIENCE_S) == 0
+    counts = row_before_end(tmp_path / "run.hilrec", 1)  # the last row is the stop itself, relays open
+    print(f"counted {counts['status.link_down']:.0f} losses of the link in {counts['status.tick']:.0f} ticks")
+    assert counts["status.link_down"] == 10
+    assert counts["out.terminal_v"] == 13.5, "the command after the last recovery was taken"
+
+
+def throttle(interface: str) -> None:
+    """Let the interface pass about 60 frames a second, with room for 25 more; further ones are refused with ENOBUFS."""
+    words = ["tc", "qdisc", "add", "dev", interface, "root", "tbf", "rate", "8kbit", "burst", "100b", "limit", "400b"]
+    if subprocess.run(words, check=False, stderr=subprocess.DEVNULL).returncode:
+        release = platform.release()
+        (module,) = Path("/").glob(f"usr/lib/uml/modules/{release}/kernel/net/sched/sch_tbf.ko")
+        subprocess.run(["insmod", str(module)], check=True)
+        subprocess.run(words, check=True)
+
+
+def test_a_full_queue_drops_and_counts_frames_and_the_bus_recovers(candump: Any, server: Any, vcan: str) -> None:
+    candump.wait_for(" 200#", count=20)
+    throttle(vcan)
+    time.sleep(2.0)
+    assert server.process.poll() is None
+    subprocess.run(["tc", "qdisc", "del", "dev", vcan, "root"], check=True)
+    candump.lines.clear()
+    candump.wait_for(" 213#", count=2)
+    dropped = [signals["QueueFull"] for _, signals in observed(candump, "LinkFaults")]
+    print(f"{dropped[-1]} frames dropped in 2 s at 60 frames a second")
+    assert dropped[-1] > 50
+    assert dropped[-1] == dropped[-2], "nothing is dropped any more"
+    assert server.end(patience_s=PATIENCE_S) == 0
+
+
+FLOOD = """
+import random, socket, struct, sys
+
+source = random.Random(7)
+lengths = {0x120: 2, 0x121: 2, 0x122: 3, 0x123: 8}
+
+
+def random_frame():
+    kind = source.random()
+    can_id = source.choice(tuple(lengths)) if kind < 0.5 else source.randrange(0x300, 1 << 11)
+    if kind < 0.1:
+        can_id = source.randrange(1 << 29) | 0x80000000
+    if 0.1 < kind < 0.15:
+        can_id |= 0x40000000
+    if 0.15 < kind < 0.2:  # the kernel passes on no error frame without a class
+        can_id = source.randrange(1, 1 << 9) | 0x20000000
+    if 0.2 < kind < 0.3:
+        length = source.choice((0, 1, 2, 3, 8, 12, 48, 64))
+        return struct.pack("=IBBBB64s", can_id, length, 0, 0, 0, source.randbytes(64)), False
+    length, data = source.randrange(9), source.randbytes(8)
+    valid = lengths.get(can_id) == length
+    valid = valid and (can_id != 0x121 or data[0] + 256 * data[1] <= 40_000)
+    valid = valid and (can_id != 0x122 or (data[0] & 3 < 3 and data[1] + 256 * data[2] <= 10_000))
+    valid = valid and (can_id != 0x123 or all(-100 <= raw <= 100 for raw in struct.unpack("=bb6x", data)))
+    return struct.pack("=IB3x8s", can_id, length, data), valid
+
+
+frames = [random_frame() for _ in range(20_000)]
+bus = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
+bus.setsockopt(socket.SOL_CAN_RAW, socket.CAN_RAW_FD_FRAMES, 1)
+bus.bind(("vcan0",))
+rounds = int(sys.argv[1]) // len(frames)
+for _ in range(rounds):
+    for frame, _ in frames:
+        bus.send(frame)
+print("flooded", rounds * len(frames), "valid", rounds * sum(valid for _, valid in frames), flush=True)
+"""
+
+
+@pytest.mark.timeout(900)  # a minute on an idle machine
+def test_a_flood_of_a_million_random_frames_leaves_the_loop_running(
+    plant_frames: Any, spawn: Callable[..., Any], tmp_path: Path, cansend: Callable[[str], None]
+) -> None:
+    server = spawn(*HILPLANT, "run", SOFT_TIME, "--json", tmp_path / "run.json")
+    plant_frames.wait_for(" 210#", count=2, patience_s=60)
+    flood = spawn(sys.executable, "-c", FLOOD, "1000000")
+    flood.wait_for("flooded 1000000", 800)
+    wrong = 1_000_000 - int(flood.output.split()[-1])
+    assert server.process.poll() is None, "the daemon lives"
+    assert wait_until(lambda: str(last(plant_frames, "PlantStatus")["Mode"]) == "Safe")
+    plant_frames.lines.clear()
+    cansend("121#BC34")  # 13.5 V, whatever the flood left
+    cansend(SLOW)
+    plant_frames.wait_for("5E1A")  # as the terminal voltage of MotorStatus
+    assert server.end(patience_s=PATIENCE_S) == 0
+    figures = json.loads((tmp_path / "run.json").read_text())
+    causes = ("unknown_frame", "wrong_length", "remote_frame", "fd_frame", "error_frame", "out_of_range")
+    counts = {cause: figures[f"counts_{cause}"] for cause in causes}
+    missed = figures["counts_missed_frame"]
+    print(f"{counts}, missed {missed}, of {wrong} wrong frames in {figures['ticks']} ticks")
+    assert all(counts.values())
+    assert sum(counts.values()) <= wrong <= sum(counts.values()) + missed, "each by its cause, or as missed"
+
+
+def test_a_run_with_random_frames_replays_bit_for_bit(
+    server: Any, spawn: Callable[..., Any], vcan: str, tmp_path: Path
+) -> None:
+    subprocess.run(["cangen", vcan, "-I", "120", "-L", "2", "-D", "r", "-n", "300", "-g", "5"], check=True)
+    subprocess.run(["cangen", vcan, "-I", "121", "-L", "2", "-D", "r", "-n", "100", "-g", "5"], check=True)
+    assert server.end(patience_s=PATIENCE_S) == 0
+    words = [*HILPLANT, "replay", str(tmp_path / "run.hilrec")]
+    replay = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert replay.returncode == 0, replay.stdout + replay.stderr
+    assert "bit for bit" in replay.stdout
