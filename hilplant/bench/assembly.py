@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench.bus import build_bus
 from hilplant.bench.description import BenchDescription, LoopSettings
 from hilplant.bench.doubts import note_doubts, offer_protection
@@ -57,11 +57,11 @@ class Bench:
     step_ns: int
     plant: Plant
     parameters: Parameters
-    parameter_row: NDArray[np.float64]
-    tables: NDArray[np.float64]
+    parameter_row: Floats
+    tables: Floats
     initial: dict[str, float]
-    state_row: NDArray[np.float64]
-    input_row: NDArray[np.float64]
+    state_row: Floats
+    input_row: Floats
     interface: dict[str, Any]
     receive: tuple[ReceivedMessage, ...]
     send: tuple[SentMessage, ...]
@@ -113,7 +113,7 @@ def check_bench(source: BenchSource = "default") -> list[Problem]:
     return [problem for problem in _attempt(source)[1] if problem.severity == "error"]
 
 
-def initial_state(parameters: Parameters, initial: Mapping[str, Any]) -> NDArray[np.float64]:
+def initial_state(parameters: Parameters, initial: Mapping[str, Any]) -> Floats:
     """Return the row of the state in which a run begins; park switch and thermal switch are at rest there."""
     crank_angle_rad = initial["crank_angle_rad"]
     contact = cam_closed(crank_angle_rad, 0.0, parameters.park_switch)
@@ -192,7 +192,7 @@ def build_bench(spot: Spot, description: BenchDescription, path: Path) -> Bench 
     )
 
 
-def _input_row(written: Mapping[str, Any]) -> NDArray[np.float64]:
+def _input_row(written: Mapping[str, Any]) -> Floats:
     row = np.array([signal.default for signal in INPUTS])
     for index, value in signal_values(written):
         row[index] = value

@@ -3,9 +3,9 @@
 from typing import Annotated, Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from hilplant.arrays import Floats
 from hilplant.checked_yaml.checked import Checked, Name, NotNegative, Positive, Real, wrong
 
 TORQUE_FORMAT = "hilplant torque network 1"
@@ -80,7 +80,7 @@ class TorqueFile(TrainedFile):
                 raise wrong("scaling", name, text=f"{name} must be a lower and a higher number")
         return self
 
-    def numbers(self) -> NDArray[np.float64]:
+    def numbers(self) -> Floats:
         """Return the row that :mod:`hilplant.models.torque_network` reads, scaling contained in the weights."""
         low, high = self.scaling.speed_rad_s
         hidden, output = np.array(self.hidden), np.array(self.output)
@@ -114,6 +114,6 @@ class PolynomialFile(TrainedFile):
     training: dict[str, Numbers | int]
     errors: dict[str, NotNegative]
 
-    def numbers(self) -> NDArray[np.float64]:
+    def numbers(self) -> Floats:
         """Return the row that :mod:`hilplant.models.polynomial` reads."""
         return np.array([float(len(self.forward) + len(self.reverse)), *self.forward, *self.reverse])

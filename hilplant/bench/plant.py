@@ -2,9 +2,7 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from hilplant.arrays import Floats
 from hilplant.bench.electrical_sections import wiring
 from hilplant.bench.load_files import PolynomialFile, TorqueFile
 from hilplant.bench.motor_model import build_motor_model, row_of_networks
@@ -41,7 +39,7 @@ class Plant:
     """Parameters and tables of one plant, the descriptions they come from, and the mechanics behind the tables."""
 
     parameters: Parameters
-    tables: NDArray[np.float64]
+    tables: Floats
     motor: MotorFile
     load: AnyLoad
     screen: ScreenFile | None

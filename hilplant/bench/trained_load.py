@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench.load_files import PolynomialFile, TorqueFile
 from hilplant.bench.parameter_hash import linkage_hash, load_hash
 from hilplant.bench.plant_description import AnyLoad, BladeEntry, NetworkLoad, PolynomialLoad
@@ -33,7 +33,7 @@ class Around:
 class TrainedLoad:
     """The numbers of the networks' row that belong to the load, and the file they come from, if there is one."""
 
-    numbers: NDArray[np.float64]
+    numbers: Floats
     file: TorqueFile | PolynomialFile | None = None
 
 
@@ -47,7 +47,7 @@ def trained_load(spot: Spot, load: AnyLoad, around: Around) -> TrainedLoad | Non
     return TrainedLoad(NO_NETWORKS)
 
 
-def check_bounds(spot: Spot, trained: TrainedLoad, parameters: Parameters, tables: NDArray[np.float64]) -> None:
+def check_bounds(spot: Spot, trained: TrainedLoad, parameters: Parameters, tables: Floats) -> None:
     """Note when a network is not as near to this plant's physical load as its file says."""
     if not isinstance(trained.file, TorqueFile):
         return
@@ -60,7 +60,7 @@ def check_bounds(spot: Spot, trained: TrainedLoad, parameters: Parameters, table
             return
 
 
-def worst_on_grid(parameters: Parameters, tables: NDArray[np.float64], wetness: float) -> float:
+def worst_on_grid(parameters: Parameters, tables: Floats, wetness: float) -> float:
     """Return the largest error of the network over a coarse grid of angles and speeds [N m]."""
     numbers = parameters.networks
     angles = np.linspace(0.0, TURN_RAD, _ANGLES, endpoint=False)

@@ -6,8 +6,8 @@ from functools import lru_cache, partial
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench.parts import ArmSection, BladeSection, LinkageFile
 from hilplant.checked_yaml.spot import Spot
 from hilplant.failure import Failure
@@ -60,7 +60,7 @@ class Mechanics:
     written: LinkageFile
     linkage: Linkage
     wiper: Wiper
-    table: NDArray[np.float64]
+    table: Floats
     closest: Closeness
     clearance_m: float
 
@@ -110,7 +110,7 @@ class _ByContent:
 
 
 @lru_cache(maxsize=16)
-def _tabulated(same: _ByContent) -> tuple[Closeness, Wiper, NDArray[np.float64]]:
+def _tabulated(same: _ByContent) -> tuple[Closeness, Wiper, Floats]:
     """Do what takes long, once for wipers that are the same: programs load one bench again and again."""
     closest = check_transmission(same.parts.linkage, same.least_transmission_deg)
     wiper = assemble(same.parts)
@@ -162,7 +162,7 @@ def _has_masses(spot: Spot, written: LinkageFile) -> bool:
     return not missing
 
 
-def _clearance(written: LinkageFile, parts: WiperParts, table: NDArray[np.float64]) -> float:
+def _clearance(written: LinkageFile, parts: WiperParts, table: Floats) -> float:
     """Return how near the blades come to each other [m]; refuse less than the file demands."""
     pivots = (parts.linkage.left_pivot, parts.linkage.right_pivot)
     channels = (LEFT_ROCKER, RIGHT_ROCKER)

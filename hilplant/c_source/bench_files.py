@@ -2,16 +2,13 @@
 
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
-from hilplant.atomic_write import write_text
+from hilplant.arrays import Floats
+from hilplant.atomic_write import make_folder, write_text
 from hilplant.bench import Bench
 from hilplant.c_source.compiler import FLAGS
 from hilplant.c_source.expression import literal
 from hilplant.c_source.plant_files import plant_c, plant_h
 from hilplant.declaration import declared
-from hilplant.failure import Failure
 from hilplant.models.records import Parameters, State
 from hilplant.signals import INPUTS
 
@@ -41,12 +38,9 @@ def write_sources(bench: Bench, folder: Path) -> list[Path]:
         "main.c": Path(__file__).with_name("main.c").read_text(encoding="utf-8"),
     }
     paths = [folder / name for name in texts]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for path, text in zip(paths, texts.values(), strict=True):
-            write_text(path, text)
-    except OSError as error:
-        raise Failure(f"{folder}: the sources cannot be written ({error.strerror})") from error
+    make_folder(folder)
+    for path, text in zip(paths, texts.values(), strict=True):
+        write_text(path, text)
     return paths
 
 
@@ -75,12 +69,12 @@ def bench_c(bench: Bench) -> str:
     )
 
 
-def _named(head: str, names: list[str], row: NDArray[np.float64]) -> str:
+def _named(head: str, names: list[str], row: Floats) -> str:
     numbers = _numbers(row)
     lines = [f"    {number}, /* {name} */" for number, name in zip(numbers, names, strict=False)]
     lines += [f"    {number}," for number in numbers[len(names) :]]
     return "\n".join([f"{head} = {{", *lines, "};", ""])
 
 
-def _numbers(row: NDArray[np.float64]) -> list[str]:
+def _numbers(row: Floats) -> list[str]:
     return [literal(float(number)).c for number in row]

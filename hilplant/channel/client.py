@@ -9,9 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from hilplant.arrays import Floats
 from hilplant.channel.requests import LEASE_S
 from hilplant.channel.run_files import RunFile, column_of, columns, run_named
 from hilplant.failure import Failure
@@ -126,7 +124,7 @@ class RunChannel:
         short = {name.partition(".")[2]: full[name] for name in reversed(full) if name.startswith(("in.", "out."))}
         return full | short
 
-    def rows(self, names: Sequence[str]) -> tuple[NDArray[np.float64], int]:
+    def rows(self, names: Sequence[str]) -> tuple[Floats, int]:
         """Return these signals in all ticks since the last call, float64 [ticks, signals], and how many were lost."""
         taken = self._follower.rows()
         return taken.records[:, [column_of(name) for name in names]], taken.lost

@@ -8,13 +8,12 @@ import time
 from collections.abc import Callable
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
 from rich.console import Console, Group, RenderableType
 from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
+from hilplant.arrays import Floats
 from hilplant.cli.canvas import Canvas, Point
 from hilplant.signals import INPUTS, MODES, OUTPUTS, STATUS
 from hilplant.units import RAD_PER_DEG, SECOND_NS, TURN_RAD
@@ -30,7 +29,7 @@ _ARM_LENGTH, _BLADE_HALF_LENGTH = 0.69, 0.40
 _GLASS: list[Point] = [(-1.52, 0.0), (-1.12, 1.14), (0.52, 1.14), (0.92, 0.0), (-1.52, 0.0)]
 
 
-Newest = Callable[[], NDArray[np.float64]]
+Newest = Callable[[], Floats]
 
 
 class ShownRow(NamedTuple):
@@ -62,7 +61,7 @@ class Scene(NamedTuple):
     stalk: str = ""
 
 
-def reading(row: NDArray[np.float64]) -> ShownRow:
+def reading(row: Floats) -> ShownRow:
     """Name the values of a row: tick, time [ns], inputs, outputs, status."""
     values = iter(row.tolist())
     next(values)

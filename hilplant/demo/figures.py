@@ -1,14 +1,12 @@
 """What a recorded run came to: wipes, rates, currents, and where the wiper stopped."""
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import AnyArray
 from hilplant.units import RAD_PER_DEG, TURN_RAD
-
-Column = NDArray[Any]
 
 #: What the figures are made of, by the names that :func:`hilplant.recording.export.signal_columns` gives.
 COLUMNS = (
@@ -50,7 +48,7 @@ class Figures(NamedTuple):
     stops: tuple[Stop, ...]
 
 
-def figures(columns: Mapping[str, Column]) -> Figures:
+def figures(columns: Mapping[str, AnyArray]) -> Figures:
     """Condense a recording; `columns` are those of :data:`COLUMNS`, one value a tick, without gaps."""
     on = columns["in_relay_on"] > 0.5
     fast = columns["in_relay_fast"] > 0.5
@@ -63,13 +61,13 @@ def figures(columns: Mapping[str, Column]) -> Figures:
     )
 
 
-def _wipes(angle_rad: Column) -> int:
+def _wipes(angle_rad: AnyArray) -> int:
     """Count the turns begun since the start; a turn that ends within the park window is one, not the next."""
     turns = float(angle_rad[-1] - angle_rad[0]) / TURN_RAD if len(angle_rad) else 0.0
     return round(turns)
 
 
-def _speed(columns: Mapping[str, Column], driven: Column) -> SpeedFigures:
+def _speed(columns: Mapping[str, AnyArray], driven: AnyArray) -> SpeedFigures:
     if not driven.any():
         return SpeedFigures(np.nan, np.nan, np.nan)
     time_s = columns["time_s"]
@@ -82,7 +80,7 @@ def _speed(columns: Mapping[str, Column], driven: Column) -> SpeedFigures:
     return SpeedFigures(rate, mean_a, float(current_a[driven].max()))
 
 
-def _stops(columns: Mapping[str, Column], on: Column) -> tuple[Stop, ...]:
+def _stops(columns: Mapping[str, AnyArray], on: AnyArray) -> tuple[Stop, ...]:
     """Look at the last tick before each new start, and at the last of all."""
     released = np.flatnonzero(on[:-1] & ~on[1:]) + 1
     stops = []

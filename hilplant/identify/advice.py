@@ -9,8 +9,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.failure import Failure
 from hilplant.identify.experiment import Run
@@ -20,13 +20,10 @@ from hilplant.identify.residuals import LeastSquares, directions
 from hilplant.identify.run_of_data import make_run
 from hilplant.identify.twin import CLEAN, TwinCondition, corrupted, played
 from hilplant.identify.uncertainty import LEAST, NORMAL_95, Identifiability
-from hilplant.measurements.measurement import Samples
 from hilplant.models.load import LOADS
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.signals import INPUT_INDEX
 from hilplant.units import SECOND_NS
-
-Matrix = NDArray[np.float64]
 
 #: How well a spring balance tells the arm's force, in parts of it.
 SPRING_BALANCE = 0.02
@@ -87,7 +84,7 @@ def _ordered(solution: Solution, names: set[str]) -> tuple[str, ...]:
     return tuple(name for name in solution.problem.choice.names if name in names)
 
 
-def _told(solution: Solution, more: list[Matrix]) -> set[str]:
+def _told(solution: Solution, more: list[Floats]) -> set[str]:
     """Return what is told when rows [residuals, parameters] are put below the derivatives."""
     problem, count = solution.problem, solution.problem.parameters
     stacked = np.vstack([solution.jacobian, *(np.pad(rows, ((0, 0), (0, len(solution.x) - count))) for rows in more)])
@@ -98,7 +95,7 @@ def _told(solution: Solution, more: list[Matrix]) -> set[str]:
     return {name for name, yes in zip(problem.choice.names, told, strict=True) if yes}
 
 
-def _rows_of(bench: Bench, solution: Solution, what: Experiment) -> Matrix | None:
+def _rows_of(bench: Bench, solution: Solution, what: Experiment) -> Floats | None:
     """Return what an experiment says of the parameters, without its own offset and start; None if it cannot be made."""
     problem, count = solution.problem, solution.problem.parameters
     if what.force_known:
@@ -121,7 +118,7 @@ def _rows_of(bench: Bench, solution: Solution, what: Experiment) -> Matrix | Non
     return _without_nuisance(own, own.start(solution.values))
 
 
-def _imagined(bench: Bench, row: Samples, what: Experiment) -> list[Run]:
+def _imagined(bench: Bench, row: Floats, what: Experiment) -> list[Run]:
     inputs = bench.input_row.copy()
     inputs[[INPUT_INDEX["left_force"], INPUT_INDEX["right_force"]]] = what.force_factor
     other = replace(bench, parameter_row=row, input_row=inputs)
@@ -129,7 +126,7 @@ def _imagined(bench: Bench, row: Samples, what: Experiment) -> list[Run]:
     return [make_run(corrupted(played(other, each), CLEAN, step_s, 0), other, each.screen) for each in what.conditions]
 
 
-def _without_nuisance(problem: LeastSquares, x: Samples) -> Matrix:
+def _without_nuisance(problem: LeastSquares, x: Floats) -> Floats:
     """Return the derivatives by the parameters, less what offsets and starts could explain."""
     moved = problem.moved
     jacobian = problem.jacobian(x)

@@ -6,10 +6,10 @@ A shaft at rest is held by as much torque as the current makes, not more, and no
 
 import numpy as np
 
-from hilplant.measurements.measurement import Samples
+from hilplant.arrays import Floats
 
 
-def torque_part(voltage_v: Samples, rest: int, period_s: float, theta: Samples | None) -> Samples:
+def torque_part(voltage_v: Floats, rest: int, period_s: float, theta: Floats | None) -> Floats:
     """Return the mean dry torque from each sample to the next in parts of T; for `rest` samples the motor rests.
 
     `theta` are a1, a0, b1, b0, c as last estimated; None, or such as no motor has: all of T acts from the step on.

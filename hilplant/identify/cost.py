@@ -5,18 +5,17 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.identify.experiment import Run, samples_of, simulate_run
 from hilplant.identify.parameters import Choice
-from hilplant.measurements.measurement import Samples
 
 
 class Parts(NamedTuple):
     """The two parts of the cost, each already divided by the number of samples: [sets]."""
 
-    current: Samples  # mean square of the current's error [A2]
-    park: Samples  # mean square of the park steps' error
+    current: Floats  # mean square of the current's error [A2]
+    park: Floats  # mean square of the park steps' error
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,15 +27,15 @@ class Cost:
 
     runs: tuple[Run, ...]
     choice: Choice
-    tables: NDArray[np.float64]
+    tables: Floats
     threads: int | None = None
 
-    def __call__(self, sets: Samples) -> Samples:
+    def __call__(self, sets: Floats) -> Floats:
         """Return (5.26) for sets of values [sets, parameters]."""
         parts = self.parts(sets)
         return parts.current + parts.park
 
-    def parts(self, sets: Samples) -> Parts:
+    def parts(self, sets: Floats) -> Parts:
         """Return both parts; samples that are missing do not count."""
         rows, total = self.choice.rows(sets), samples_of(self.runs)
         current, park = np.zeros(len(sets)), np.zeros(len(sets))
@@ -47,10 +46,10 @@ class Cost:
         return Parts(current / total, park / total)
 
 
-def _squares(errors: Samples, run: Run) -> Samples:
+def _squares(errors: Floats, run: Run) -> Floats:
     return np.asarray(np.einsum("ij,ij,j->i", errors, errors, run.valid.astype(np.float64)), np.float64)
 
 
-def cost_of(runs: Sequence[Run], choice: Choice, tables: NDArray[np.float64]) -> Cost:
+def cost_of(runs: Sequence[Run], choice: Choice, tables: Floats) -> Cost:
     """Return the cost of `choice` over runs on this machine."""
     return Cost(tuple(runs), choice, tables)

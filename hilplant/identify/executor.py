@@ -9,20 +9,20 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.extras import need
 from hilplant.failure import Failure
 from hilplant.identify.cost import Cost
-from hilplant.measurements.measurement import Samples
 
 
 class Executor(Protocol):
     """Evaluates sets [sets, parameters] by a cost."""
 
-    def __call__(self, cost: Cost, sets: Samples) -> Samples:
+    def __call__(self, cost: Cost, sets: Floats) -> Floats:
         """Return the cost of each set."""
 
 
-def here(cost: Cost, sets: Samples) -> Samples:
+def here(cost: Cost, sets: Floats) -> Floats:
     """Evaluate on all processors of this machine; the compiled step needs no processes for that."""
     return cost(sets)
 
@@ -34,7 +34,7 @@ class OnDask:
         self._client = client
         self._sent: tuple[Cost, Any] | None = None
 
-    def __call__(self, cost: Cost, sets: Samples) -> Samples:
+    def __call__(self, cost: Cost, sets: Floats) -> Floats:
         """Return the cost of each set; each worker thread takes a few at a time."""
         if self._sent is None or self._sent[0] is not cost:
             self._sent = cost, self._client.scatter(replace(cost, threads=1), broadcast=True)
@@ -51,7 +51,7 @@ class OnDask:
         self._client.close()
 
 
-def _of_share(sets: Samples, cost: Cost) -> Samples:
+def _of_share(sets: Floats, cost: Cost) -> Floats:
     return cost(sets)
 
 
@@ -77,6 +77,6 @@ def on_cluster(address: str) -> OnDask:
     return OnDask(client)
 
 
-def evaluator(cost: Cost, executor: Executor = here) -> Callable[[Samples], Samples]:
+def evaluator(cost: Cost, executor: Executor = here) -> Callable[[Floats], Floats]:
     """Return a cost as a search calls it."""
     return lambda sets: executor(cost, sets)

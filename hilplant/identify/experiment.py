@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hilplant.measurements.measurement import Mask, Samples
+from hilplant.arrays import Flags, Floats
 from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX
 from hilplant.simulation.batch import simulate_batch
 from hilplant.units import TURN_RAD
@@ -45,28 +45,28 @@ class Run:
     """
 
     name: str
-    inputs: NDArray[np.float64]
-    current_a: Samples
-    voltage_v: Samples
-    park: Samples
-    valid: Mask
+    inputs: Floats
+    current_a: Floats
+    voltage_v: Floats
+    park: Floats
+    valid: Flags
     period_s: float
     start: Start
     edges: NDArray[np.intp]
-    edge_angles_rad: Samples
-    edge_speeds_rad_s: Samples
+    edge_angles_rad: Floats
+    edge_speeds_rad_s: Floats
 
     def __len__(self) -> int:
         """Return the number of samples."""
         return len(self.current_a)
 
     @property
-    def time_s(self) -> Samples:
+    def time_s(self) -> Floats:
         """Time from the start of the run."""
         return np.asarray(np.arange(len(self)) * self.period_s, np.float64)
 
     @property
-    def park_steps(self) -> Samples:
+    def park_steps(self) -> Floats:
         """How often the contact has closed since the start, section 5.2."""
         steps = np.zeros(len(self))
         steps[self.edges] = 1.0
@@ -76,14 +76,12 @@ class Run:
 class Simulated(NamedTuple):
     """What the model makes of a run, for each parameter set: arrays [sets, samples]."""
 
-    current_a: Samples
-    phase_rad: Samples
-    park_steps: Samples
+    current_a: Floats
+    phase_rad: Floats
+    park_steps: Floats
 
 
-def simulate_run(
-    run: Run, rows: NDArray[np.float64], starts: Samples, tables: NDArray[np.float64], threads: int | None = None
-) -> Simulated:
+def simulate_run(run: Run, rows: Floats, starts: Floats, tables: Floats, threads: int | None = None) -> Simulated:
     """Run a recording again with many parameter sets; `starts` is each one's number of its own start.
 
     The phase is the crank's angle, counted on from the start without wrapping.
@@ -97,7 +95,7 @@ def simulate_run(
     return Simulated(output[:, :, 0], phase, _closings(output[:, :, 2]))
 
 
-def _states(run: Run, rows: NDArray[np.float64], first: Samples, starts: Samples) -> NDArray[np.float64]:
+def _states(run: Run, rows: Floats, first: Floats, starts: Floats) -> Floats:
     states = np.zeros((len(rows), len(STATE_INDEX)))
     states[:, STATE_INDEX["current_a"]] = run.start.current_a
     states[:, STATE_INDEX["park_contact"]] = run.start.contact
@@ -107,7 +105,7 @@ def _states(run: Run, rows: NDArray[np.float64], first: Samples, starts: Samples
     return states
 
 
-def _unwrapped(angle_rad: Samples, first: Samples) -> Samples:
+def _unwrapped(angle_rad: Floats, first: Floats) -> Floats:
     """Count the crank's angle on over whole turns; it never moves by half a turn in one step."""
     moved = np.diff(angle_rad, axis=1)
     moved -= TURN_RAD * np.round(moved / TURN_RAD)
@@ -116,7 +114,7 @@ def _unwrapped(angle_rad: Samples, first: Samples) -> Samples:
     return np.asarray(phase + first[:, np.newaxis], np.float64)
 
 
-def _closings(contact: Samples) -> Samples:
+def _closings(contact: Floats) -> Floats:
     closed = contact > 0.5
     rises = np.zeros_like(contact)
     rises[:, 1:] = closed[:, 1:] & ~closed[:, :-1]

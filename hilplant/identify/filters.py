@@ -5,20 +5,19 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import BadCoefficients, cont2discrete, lfilter
 
-from hilplant.measurements.measurement import Samples
+from hilplant.arrays import Floats
 
 
-def filtered(values: Samples, model: Samples, period_s: float, held: bool) -> NDArray[np.float64]:
+def filtered(values: Floats, model: Floats, period_s: float, held: bool) -> Floats:
     """Return s/A and 1/A of a signal that is held between samples, or else is a straight line between them."""
     first = 0.0 if held else values[0]
     answers = [held_answer(numerator, model, values, period_s, held) for numerator in ([1.0, 0.0], [0.0, 1.0])]
     return np.column_stack(answers) if first == 0.0 else _from_level(values, model, period_s)
 
 
-def _from_level(values: Samples, model: Samples, period_s: float) -> NDArray[np.float64]:
+def _from_level(values: Floats, model: Floats, period_s: float) -> Floats:
     """Filter a signal as if it had been at its first value for ever, so that no jump is seen at its start."""
     first = values[0]
     moved = [held_answer(numerator, model, values - first, period_s, False) for numerator in ([1.0, 0.0], [0.0, 1.0])]
@@ -26,8 +25,8 @@ def _from_level(values: Samples, model: Samples, period_s: float) -> NDArray[np.
 
 
 def held_answer(
-    numerator: Samples | list[float], model: Samples, values: Samples, period_s: float, held: bool = True
-) -> Samples:
+    numerator: Floats | list[float], model: Floats, values: Floats, period_s: float, held: bool = True
+) -> Floats:
     """Return a signal behind numerator/A; it is held between samples, or else a straight line between them."""
     top, bottom = _discrete(tuple(numerator), tuple(model), period_s, held)
     return np.asarray(lfilter(top, bottom, values), np.float64)
@@ -41,7 +40,7 @@ def _discrete(numerator: tuple[float, ...], model: tuple[float, ...], period_s: 
     return top.ravel(), bottom
 
 
-def free_answers(count: int, model: Samples, period_s: float) -> NDArray[np.float64]:
+def free_answers(count: int, model: Floats, period_s: float) -> Floats:
     """Return the answers of s/A and 1/A to an impulse at the start: what any state at the start decays with."""
     roots = np.roots([1.0, model[0], model[1]]).astype(complex)
     if abs(roots[0] - roots[1]) < 1e-6 * abs(roots[0]):
@@ -52,7 +51,7 @@ def free_answers(count: int, model: Samples, period_s: float) -> NDArray[np.floa
     return np.column_stack([((roots[0] * first - roots[1] * second) / apart).real, ((first - second) / apart).real])
 
 
-def stable(denominator: Samples) -> Samples:
+def stable(denominator: Floats) -> Floats:
     """Mirror roots of the filter into the stable half plane, away from its edge."""
     roots = np.roots([1.0, denominator[0], denominator[1]])
     mirrored = -np.maximum(np.abs(roots.real), 0.1) + 1j * roots.imag

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from uncertainties import correlated_values
 
+from hilplant.arrays import Flags, Floats
 from hilplant.failure import Failure
 from hilplant.identify.srivc import Stretch, TransferFit, fit
 from hilplant.identify.transfer_function import (
@@ -27,7 +28,7 @@ from hilplant.identify.transfer_function import (
     load_constant,
 )  # fmt: skip
 from hilplant.measurements.alignment import resting, voltage_steps
-from hilplant.measurements.measurement import Mask, Measurement, Samples, running
+from hilplant.measurements.measurement import Measurement, running
 from hilplant.measurements.park import rising_edges
 from hilplant.motor_bench.bench_measurements import (
     MotorFriction,
@@ -96,7 +97,7 @@ def first_stage(data: Measurement, gear_ratio: float, drag_n_m_s: float | None =
     return results
 
 
-def _windows(data: Measurement, mask: Mask, steps: list[int]) -> list[slice]:
+def _windows(data: Measurement, mask: Flags, steps: list[int]) -> list[slice]:
     """Return the samples about each step after which the motor stays on in this mode."""
     before, after = round(BEFORE_S / data.period_s), round(WINDOW_S / data.period_s)
     windows = []
@@ -158,13 +159,13 @@ def _refuse_impossible(data: Measurement, mode: str, named: Coefficients) -> Non
             )
 
 
-def _bridged(values: Samples, valid: Mask) -> Samples:
+def _bridged(values: Floats, valid: Flags) -> Floats:
     """Put a straight line where samples do not count, so that a filter is not upset by what it must not see."""
     places = np.arange(len(values))
     return np.where(valid, values, np.interp(places, places[valid], values[valid]))
 
 
-def _turns(data: Measurement, mask: Mask, gear_ratio: float) -> list[_Turn]:
+def _turns(data: Measurement, mask: Flags, gear_ratio: float) -> list[_Turn]:
     """Return the means over each whole turn between park edges in this mode; L di/dt is nearly 0 there."""
     turns = []
     for begin, end in pairwise(rising_edges(data.park)):

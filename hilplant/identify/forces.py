@@ -3,12 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.identify.local_search import Solution
 from hilplant.identify.parameters import Choice
 from hilplant.identify.uncertainty import Spread
-from hilplant.measurements.measurement import Samples
 from hilplant.models.friction import coefficient
 from hilplant.models.records import Parameters
 from hilplant.models.row import unpack
@@ -48,9 +47,9 @@ def _at(solution: Solution, known: Spread, name: str, screen: float, speed_mm_s:
     return FrictionForce(name, speed_mm_s, float(forces[0]), float(np.sqrt(max(variance, 0.0))))
 
 
-def force(choice: Choice, values: Samples, screen: float, speed_mm_s: float) -> float:
+def force(choice: Choice, values: Floats, screen: float, speed_mm_s: float) -> float:
     """Return the friction force of the left blade [N]."""
-    row: NDArray[np.float64] = choice.rows(values[np.newaxis])[0]
+    row: Floats = choice.rows(values[np.newaxis])[0]
     load = unpack(Parameters, row).load
     mu, _ = coefficient(speed_mm_s, screen, load.left_blade.force_n, load.friction)
     return float(load.left_blade.wear * load.left_blade.force_n * mu)

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench, load_bench
 from hilplant.failure import Failure
 from hilplant.identify.executor import Executor, here, on_cluster
@@ -21,7 +22,6 @@ from hilplant.identify.run_of_data import make_run
 from hilplant.identify.stages import ALL, LEAST_SQUARES, TRANSFER_FUNCTION, StagedValues
 from hilplant.identify.starting_point import StartingPoint, starting_point
 from hilplant.identify.three_stages import Identified, Task, has_wiper, identify, identify_partly
-from hilplant.measurements.measurement import Samples
 from hilplant.measurements.named_data import Named, read_named
 from hilplant.models.load import LOADS
 from hilplant.progress import OnProgress, unseen
@@ -109,7 +109,7 @@ def _settings(request: Request) -> SearchSettings:
     return SearchSettings(population=request.population, generations=request.generations)
 
 
-def _held(bench: Bench, texts: tuple[str, ...]) -> tuple[Samples, list[str]]:
+def _held(bench: Bench, texts: tuple[str, ...]) -> tuple[Floats, list[str]]:
     """Return the bench's row with held parameters at the values given (NAME=VALUE, or NAME for the bench's)."""
     row, names = bench.parameter_row.copy(), []
     for text in texts:

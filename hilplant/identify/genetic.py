@@ -10,19 +10,17 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.random import Generator
-from numpy.typing import NDArray
 
-from hilplant.measurements.measurement import Samples
+from hilplant.arrays import Flags, Floats
 
-Evaluate = Callable[[Samples], Samples]
-Matrix = NDArray[np.float64]
+Evaluate = Callable[[Floats], Floats]
 
 
 class Space(NamedTuple):
     """Where to search: bounds, and pairs (greater, smaller) of places that are to stay in order, (3.32)."""
 
-    low: Samples
-    high: Samples
+    low: Floats
+    high: Floats
     ordered: tuple[tuple[int, int], ...] = ()
 
 
@@ -52,7 +50,7 @@ OnGeneration = Callable[[Generation], None]
 class Outcome(NamedTuple):
     """What a search found: the best values, their cost, and how it came there."""
 
-    values: Samples
+    values: Floats
     cost: float
     history: tuple[Generation, ...]
 
@@ -82,7 +80,7 @@ def genetic(
     return Outcome(people[0].copy(), float(costs[0]), tuple(history))
 
 
-def first_population(random: Generator, space: Space, count: int) -> Matrix:
+def first_population(random: Generator, space: Space, count: int) -> Floats:
     """Draw individuals evenly from the space, in order where that is asked for."""
     shares = random.random((count, len(space.low)))
     people = np.asarray(space.low + shares * (space.high - space.low), np.float64)
@@ -92,7 +90,7 @@ def first_population(random: Generator, space: Space, count: int) -> Matrix:
     return people
 
 
-def offspring(random: Generator, parents: Matrix, costs: Samples, settings: SearchSettings, space: Space) -> Matrix:
+def offspring(random: Generator, parents: Floats, costs: Floats, settings: SearchSettings, space: Space) -> Floats:
     """Return two children of each pair of tournament winners until the population is full again."""
     wanted, genes = settings.population - len(parents), parents.shape[1]
     children = np.empty((wanted + wanted % 2, genes))
@@ -109,12 +107,12 @@ def offspring(random: Generator, parents: Matrix, costs: Samples, settings: Sear
     return children[:wanted]
 
 
-def _winner(random: Generator, costs: Samples, contenders: int) -> int:
+def _winner(random: Generator, costs: Floats, contenders: int) -> int:
     drawn = random.integers(0, len(costs), contenders)
     return int(drawn[np.argmin(costs[drawn])])
 
 
-def mutate(random: Generator, people: Matrix, settings: SearchSettings, space: Space) -> NDArray[np.bool_]:
+def mutate(random: Generator, people: Floats, settings: SearchSettings, space: Space) -> Flags:
     """Give random genes new values; those drawn among the elite keep theirs. Returns who changed."""
     changed = np.zeros(len(people), dtype=np.bool_)
     genes = people.shape[1]
@@ -129,7 +127,7 @@ def mutate(random: Generator, people: Matrix, settings: SearchSettings, space: S
     return changed
 
 
-def _limits(person: Samples, gene: int, space: Space) -> tuple[float, float]:
+def _limits(person: Floats, gene: int, space: Space) -> tuple[float, float]:
     low, high = float(space.low[gene]), float(space.high[gene])
     for greater, smaller in space.ordered:
         if gene == smaller:

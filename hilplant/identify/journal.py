@@ -12,8 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
+from hilplant.arrays import Floats
+from hilplant.atomic_write import cannot_be_written
 from hilplant.failure import Failure
-from hilplant.measurements.measurement import Samples
 
 
 class Journal:
@@ -24,7 +25,7 @@ class Journal:
 
     def __init__(self, path: Path, identity: str, resume: bool) -> None:
         self.path, self.identity = path, identity
-        self._costs: list[Samples] = []
+        self._costs: list[Floats] = []
         self._digests: list[str] = []
         self._next = 0
         if resume and path.exists():
@@ -49,10 +50,10 @@ class Journal:
         """How many populations it holds."""
         return len(self._costs)
 
-    def answering(self, evaluate: Callable[[Samples], Samples]) -> Callable[[Samples], Samples]:
+    def answering(self, evaluate: Callable[[Floats], Floats]) -> Callable[[Floats], Floats]:
         """Return `evaluate`, answered from the journal as long as that reaches, and kept in it from there on."""
 
-        def answered(sets: Samples) -> Samples:
+        def answered(sets: Floats) -> Floats:
             digest = hashlib.sha256(np.ascontiguousarray(sets).tobytes()).hexdigest()[:16]
             if self._next < len(self._costs):
                 if self._digests[self._next] != digest:
@@ -80,7 +81,7 @@ class Journal:
                 os.fsync(file.fileno())
             os.replace(new, self.path)
         except OSError as error:
-            raise Failure(f"{self.path}: cannot be written ({error.strerror})") from error
+            raise cannot_be_written(self.path, error) from error
 
     def remove(self) -> None:
         """Delete the file: the run has come to its end."""

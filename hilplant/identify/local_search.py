@@ -4,14 +4,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from hilplant.arrays import Floats
 from hilplant.identify.parameters import search_space
 from hilplant.identify.residuals import LeastSquares, ResidualNoise, directions
-from hilplant.measurements.measurement import Samples
-
-Matrix = NDArray[np.float64]
 
 #: Steps of one round, at most, and when it has settled: the sum of squares changes by less than this part of itself.
 STEPS, SETTLED = 20, 3e-6
@@ -30,18 +27,18 @@ class Solution(NamedTuple):
     `low` and `high` are the scaled bounds in the end; `moved_on` names parameters that went beyond the first ones.
     """
 
-    x: Samples
+    x: Floats
     problem: LeastSquares
-    residuals: Samples
-    jacobian: Matrix
+    residuals: Floats
+    jacobian: Floats
     evaluations: int
-    low: Samples
-    high: Samples
+    low: Floats
+    high: Floats
     moved_on: tuple[str, ...]
     settled: bool
 
     @property
-    def values(self) -> Samples:
+    def values(self) -> Floats:
         """The parameters' values."""
         return self.problem.values(self.x)
 
@@ -51,7 +48,7 @@ class Solution(NamedTuple):
         return left_over(self.problem, self.residuals)
 
 
-def search(problem: LeastSquares, values: Samples, told: Callable[[float], None] = lambda _: None) -> Solution:
+def search(problem: LeastSquares, values: Floats, told: Callable[[float], None] = lambda _: None) -> Solution:
     """Search from parameter values, within (5.22) about them; weights follow what is left over.
 
     The width of its bounds ties each parameter weakly to where it began: what the data say nothing of stays there
@@ -95,7 +92,7 @@ def _close(one: ResidualNoise, other: ResidualNoise) -> bool:
     return bool(np.all(ratios < CLOSE) and np.all(ratios > 1.0 / CLOSE))
 
 
-def _at_bounds(problem: LeastSquares, x: Samples, low: Samples, high: Samples) -> list[str]:
+def _at_bounds(problem: LeastSquares, x: Floats, low: Floats, high: Floats) -> list[str]:
     """Name the parameters that stand at a bound which is not one of nature."""
     names = []
     for place, parameter in enumerate(problem.choice.parameters):
@@ -110,9 +107,7 @@ def _at_bounds(problem: LeastSquares, x: Samples, low: Samples, high: Samples) -
     return names
 
 
-def _about(
-    problem: LeastSquares, x: Samples, bounds: tuple[Samples, Samples], names: list[str]
-) -> tuple[Samples, Samples]:
+def _about(problem: LeastSquares, x: Floats, bounds: tuple[Floats, Floats], names: list[str]) -> tuple[Floats, Floats]:
     """Take the bounds of some parameters by (5.22) about where they are now."""
     low, high = (bound.copy() for bound in bounds)
     new_low, new_high = search_space(problem.choice, problem.values(x))
@@ -122,7 +117,7 @@ def _about(
     return low, high
 
 
-def left_over(problem: LeastSquares, residuals: Samples) -> ResidualNoise:
+def left_over(problem: LeastSquares, residuals: Floats) -> ResidualNoise:
     """Return the root mean square of current errors [A] and of edge errors [s]."""
     currents = np.concatenate([residuals[current] for current, _ in problem.parts()])
     edges = np.concatenate([residuals[edge] for _, edge in problem.parts()])
@@ -135,19 +130,19 @@ def left_over(problem: LeastSquares, residuals: Samples) -> ResidualNoise:
 class _Tied:
     """The problem with a weak tie of each parameter to its start; counts simulations."""
 
-    def __init__(self, problem: LeastSquares, begin: Samples, bounds: tuple[Samples, Samples]) -> None:
+    def __init__(self, problem: LeastSquares, begin: Floats, bounds: tuple[Floats, Floats]) -> None:
         self.problem, self.begin, self.bounds = problem, begin, bounds
         self.evaluations = 0
-        self.basis: Matrix | None = None
+        self.basis: Floats | None = None
 
     @property
-    def tie(self) -> Samples:
+    def tie(self) -> Floats:
         low, high = self.bounds
         ties = np.zeros(len(low))
         ties[: self.problem.parameters] = 1.0 / (high - low)[: self.problem.parameters]
         return ties
 
-    def settle(self, x: Samples) -> tuple[Samples, bool]:
+    def settle(self, x: Floats) -> tuple[Floats, bool]:
         """Return where one round leads, and whether it settled there."""
         low, high = self.bounds
         margin = 1e-6 * (high - low)
@@ -157,16 +152,16 @@ class _Tied:
         )  # fmt: skip
         return np.asarray(found.x, np.float64), bool(found.status > 0)
 
-    def residuals(self, x: Samples) -> Samples:
+    def residuals(self, x: Floats) -> Floats:
         """Return the residuals, those of the ties behind them."""
         self.evaluations += 1
         return np.concatenate([self.problem.residuals(x), (x - self.begin) * self.tie])
 
-    def jacobian(self, x: Samples) -> Matrix:
+    def jacobian(self, x: Floats) -> Floats:
         """Return the derivatives of all residuals."""
         return np.vstack([self.last_jacobian(x), np.diag(self.tie)])
 
-    def last_jacobian(self, x: Samples) -> Matrix:
+    def last_jacobian(self, x: Floats) -> Floats:
         """Return the problem's own derivatives; those of the step before say in which directions to look."""
         for _ in range(2 if self.basis is None else 1):
             found = self.problem.jacobian(x, self.basis)

@@ -9,9 +9,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.identify.genetic import Evaluate, Generation, OnGeneration, Outcome, SearchSettings, Space, genetic
-from hilplant.measurements.measurement import Samples
 
 Search = Callable[[Evaluate, Space, SearchSettings, int, OnGeneration], Outcome]
 
@@ -24,7 +24,7 @@ class _Watched:
         self.best, self.cost, self.history = space.low, math.inf, list[Generation]()
         self.evaluations = 0
 
-    def __call__(self, shares: Samples) -> Samples:
+    def __call__(self, shares: Floats) -> Floats:
         sets = self.space.low + np.clip(shares, 0.0, 1.0) * (self.space.high - self.space.low)
         costs = self.evaluate(sets)
         self.evaluations += len(sets)

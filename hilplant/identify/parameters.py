@@ -8,10 +8,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
-from hilplant.measurements.measurement import Samples
 from hilplant.models.records import PARAMETER_INDEX
 
 #: (5.22): the search goes from half to twice of what is known; for inductances, which stage 1 tells badly, from a
@@ -121,7 +120,7 @@ BY_NAME = {parameter.name: parameter for parameter in (*SEVENTEEN, *OPTIONAL)}
 class Choice:
     """Which parameters are looked for, over a row that says all the others."""
 
-    def __init__(self, parameters: Sequence[Parameter], base_row: Samples) -> None:
+    def __init__(self, parameters: Sequence[Parameter], base_row: Floats) -> None:
         self.parameters = tuple(parameters)
         self.base_row = np.array(base_row)
         free = {parameter.place for parameter in self.parameters}
@@ -145,11 +144,11 @@ class Choice:
         return [parameter.name for parameter in self.parameters]
 
     @property
-    def values(self) -> Samples:
+    def values(self) -> Floats:
         """What the row says of them."""
         return np.array([self.base_row[parameter.place] for parameter in self.parameters])
 
-    def rows(self, sets: Samples) -> NDArray[np.float64]:
+    def rows(self, sets: Floats) -> Floats:
         """Return packed rows [sets, parameters] for values [sets, looked for]."""
         rows = np.tile(self.base_row, (len(sets), 1))
         for column, targets in enumerate(self._targets):
@@ -157,13 +156,13 @@ class Choice:
                 rows[:, place] = ratio * sets[:, column]
         return rows
 
-    def without(self, held: Sequence[str], values: Samples) -> "Choice":
+    def without(self, held: Sequence[str], values: Floats) -> "Choice":
         """Return the same without some, which keep what `values` say; so do all others, as a start."""
         row = self.rows(values[np.newaxis])[0]
         return Choice([parameter for parameter in self.parameters if parameter.name not in held], row)
 
 
-def chosen(base_row: Samples, extra: Sequence[str] = (), held: Sequence[str] = ()) -> Choice:
+def chosen(base_row: Floats, extra: Sequence[str] = (), held: Sequence[str] = ()) -> Choice:
     """Return the seventeen and those asked for, less those that are held.
 
     Raises
@@ -184,7 +183,7 @@ def of_the_wiper() -> list[str]:
     return [parameter.name for parameter in (*_FRICTION, _FORCE)]
 
 
-def search_space(choice: Choice, about: Samples) -> tuple[Samples, Samples]:
+def search_space(choice: Choice, about: Floats) -> tuple[Floats, Floats]:
     """Return the lowest and highest values by (5.22) about what is known, `about`.
 
     Where nothing is known (0) it is from 0 to twice the usual value. A signed parameter may change its sign.

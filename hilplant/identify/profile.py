@@ -10,13 +10,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Flags, Floats
 from hilplant.identify.local_search import Solution
 from hilplant.identify.uncertainty import NORMAL_95, RISE_95, Identifiability, Spread
-from hilplant.measurements.measurement import Mask, Samples
-
-Matrix = NDArray[np.float64]
 
 #: Gauss-Newton steps of the others at each distance, and distances that are tried.
 FOLLOWING, DISTANCES = 2, 4
@@ -69,7 +66,7 @@ class _Walk:
         self.distance = np.minimum(NORMAL_95 * self.errors, self.reach)
         self.gains = {place: _gain(solution, place) for place in places}
 
-    def ends(self) -> Samples:
+    def ends(self) -> Floats:
         """Return where the rise is the wanted one; not finite where the bound comes first."""
         for _ in range(DISTANCES):
             ratio = self.rises() / self.wanted
@@ -81,7 +78,7 @@ class _Walk:
             self.distance = np.minimum(met, self.reach)
         return np.where(beyond, np.inf, self._values(met))
 
-    def hangs(self) -> Mask:
+    def hangs(self) -> Flags:
         """Say of which ends the variance to first order is larger than with the followed directions alone."""
         jacobian, rows = self.solution.jacobian, []
         for place in self.held:
@@ -91,16 +88,16 @@ class _Walk:
         followed = self.variance / np.maximum(rows, 1e-300)
         return np.asarray(self.errors**2 > HANGS * followed, np.bool_)
 
-    def first_order(self) -> Samples:
+    def first_order(self) -> Floats:
         """Return the ends by the standard error; not finite where the bound comes first."""
         distance = NORMAL_95 * self.errors
         return np.where(distance < self.reach, self._values(distance), np.inf)
 
-    def _values(self, distance: Samples) -> Samples:
+    def _values(self, distance: Floats) -> Floats:
         scale = self.solution.problem.scale[self.held]
         return np.asarray((self.solution.x[self.held] + self.sign * distance) * scale, np.float64)
 
-    def rises(self) -> Samples:
+    def rises(self) -> Floats:
         """Return how much the sum of squares rises at the distances, the others following."""
         solution, rows = self.solution, range(len(self.held))
         jacobian, problem = solution.jacobian, solution.problem
@@ -120,7 +117,7 @@ class _Walk:
         return least
 
 
-def _gain(solution: Solution, held: int) -> Matrix:
+def _gain(solution: Solution, held: int) -> Floats:
     """Return what turns a slope of the other unknowns into their Gauss-Newton step."""
     others = np.delete(np.arange(len(solution.x)), held)
     widths = np.ones(len(solution.x))

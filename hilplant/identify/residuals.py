@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.identify.experiment import Run, simulate_run
 from hilplant.identify.parameters import Choice
-from hilplant.measurements.measurement import Samples
 
 #: First steps of the finite differences, in units of an unknown's scale, and the longest of later ones.
 FIRST_STEP, LONGEST_STEP = 1e-4, 0.05
@@ -39,26 +39,26 @@ class LeastSquares:
     """
 
     def __init__(
-        self, runs: Sequence[Run], choice: Choice, tables: NDArray[np.float64], noise: ResidualNoise, scale: Samples
+        self, runs: Sequence[Run], choice: Choice, tables: Floats, noise: ResidualNoise, scale: Floats
     ) -> None:
         self.runs, self.choice, self.tables, self.noise = tuple(runs), choice, tables, noise
         starts = [0.1 * (run.start.high - run.start.low) for run in runs]
         self.scale = np.concatenate([scale, np.full(len(runs), noise.current_a), starts])
         self.parameters = len(choice)
 
-    def start(self, values: Samples) -> Samples:
+    def start(self, values: Floats) -> Floats:
         """Return the scaled unknowns for parameter values, with offsets 0 and each run's guess of its start."""
         guesses = [run.start.guess for run in self.runs]
         return np.asarray(np.concatenate([values, np.zeros(len(self.runs)), guesses]) / self.scale, np.float64)
 
-    def bounds(self, low: Samples, high: Samples) -> tuple[Samples, Samples]:
+    def bounds(self, low: Floats, high: Floats) -> tuple[Floats, Floats]:
         """Return scaled bounds of all unknowns for those of the parameters."""
         offset = np.full(len(self.runs), MOST_OFFSET_A)
         lows = np.concatenate([low, -offset, [run.start.low for run in self.runs]])
         highs = np.concatenate([high, offset, [run.start.high for run in self.runs]])
         return lows / self.scale, highs / self.scale
 
-    def values(self, x: Samples) -> Samples:
+    def values(self, x: Floats) -> Floats:
         """Return the parameters' values."""
         return np.asarray((x * self.scale)[: self.parameters], np.float64)
 
@@ -68,7 +68,7 @@ class LeastSquares:
         other.scale = self.scale
         return other
 
-    def localised(self, x: Samples) -> "LeastSquares":
+    def localised(self, x: Floats) -> "LeastSquares":
         """Return the same problem with the crank's speed at each edge as the model has it at `x`.
 
         A mean speed serves until then: far from the solution the model may stand still at an edge.
@@ -85,7 +85,7 @@ class LeastSquares:
         other.scale = self.scale
         return other
 
-    def simulated(self, sets: Samples) -> Samples:
+    def simulated(self, sets: Floats) -> Floats:
         """Return the residuals [sets, residuals] of scaled unknowns [sets, unknowns], in one batch for each run."""
         values = sets * self.scale
         rows, count = self.choice.rows(values[:, : self.parameters]), len(self.runs)
@@ -96,17 +96,17 @@ class LeastSquares:
             parts.append(self._of_run(run, rows, offset, start))
         return np.concatenate(parts, axis=1)
 
-    def _of_run(self, run: Run, rows: NDArray[np.float64], offset: Samples, start: Samples) -> Samples:
+    def _of_run(self, run: Run, rows: Floats, offset: Floats, start: Floats) -> Floats:
         made = simulate_run(run, rows, start, self.tables)
         current = made.current_a + offset[:, np.newaxis] - run.current_a
         late_s = edge_errors_s(run, made.phase_rad)
         return np.hstack([current[:, run.valid] / self.noise.current_a, late_s / self.noise.edge_s])
 
-    def residuals(self, x: Samples) -> Samples:
+    def residuals(self, x: Floats) -> Floats:
         """Return the residuals of one set."""
         return np.asarray(self.simulated(x[np.newaxis])[0], np.float64)
 
-    def jacobian(self, x: Samples, basis: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+    def jacobian(self, x: Floats, basis: Floats | None = None) -> Floats:
         """Return the derivatives [residuals, unknowns] by central differences, all evaluated in one batch.
 
         The columns of `basis` are the directions and steps in which the unknowns but the offsets are moved; left out,
@@ -132,7 +132,7 @@ class LeastSquares:
     def _is_offset(self, place: int) -> bool:
         return self.parameters <= place < self.parameters + len(self.runs)
 
-    def _fill_offsets(self, columns: NDArray[np.float64]) -> None:
+    def _fill_offsets(self, columns: Floats) -> None:
         for place, (current, _) in enumerate(self.parts()):
             column = self.parameters + place
             columns[current, column] = self.scale[column] / self.noise.current_a
@@ -147,7 +147,7 @@ class LeastSquares:
         return slices
 
 
-def directions(jacobian: NDArray[np.float64]) -> NDArray[np.float64]:
+def directions(jacobian: Floats) -> Floats:
     """Return a basis for differences: along each singular vector, as far as changes the residuals by 1 in all.
 
     Differences parameter by parameter cannot see what a combination does in which large effects cancel: where a rocker
@@ -159,7 +159,7 @@ def directions(jacobian: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(vectors.T * steps, np.float64)
 
 
-def edge_errors_s(run: Run, phase_rad: Samples) -> Samples:
+def edge_errors_s(run: Run, phase_rad: Floats) -> Floats:
     """Return by how much the model is early at each park edge [s], [sets, edges]."""
     half_way = 0.5 * (phase_rad[:, run.edges - 1] + phase_rad[:, run.edges])
     return np.asarray((half_way - run.edge_angles_rad) / run.edge_speeds_rad_s, np.float64)

@@ -7,11 +7,12 @@ import numpy as np
 import yaml
 
 from hilplant import resources
+from hilplant.arrays import Floats
 from hilplant.atomic_write import write_text
 from hilplant.bench import Bench
 from hilplant.identify.stages import ALL, StagedValues
 from hilplant.identify.three_stages import Identified, Task, has_wiper
-from hilplant.measurements.measurement import Measurement, Samples
+from hilplant.measurements.measurement import Measurement
 from hilplant.models.records import Motor, Parameters
 from hilplant.models.row import unpack
 
@@ -37,7 +38,7 @@ def write_partly(out: Path, task: Task, found: StagedValues, origin: ResultOrigi
     return _write(out, task.bench, found.row, facts)
 
 
-def _write(out: Path, bench: Bench, row: Samples, facts: dict[str, Any]) -> list[Path]:
+def _write(out: Path, bench: Bench, row: Floats, facts: dict[str, Any]) -> list[Path]:
     record = unpack(Parameters, row)
     stem = out.with_suffix("")
     motor, screen = stem.with_name(f"{stem.name}.motor.yaml"), stem.with_name(f"{stem.name}.screen.yaml")
@@ -93,7 +94,7 @@ def _motor(name: str, motor: Motor, facts: dict[str, Any]) -> dict[str, Any]:
     return _document(f"{name} motor", facts, "Motor") | brushes | numbers
 
 
-def _screen(bench: Bench, name: str, row: Samples, facts: dict[str, Any]) -> dict[str, Any]:
+def _screen(bench: Bench, name: str, row: Floats, facts: dict[str, Any]) -> dict[str, Any]:
     friction = unpack(Parameters, row).load.friction._asdict()
     groups: dict[str, dict[str, float]] = {"dry": {}, "wet": {}, "tacky": {}}
     for key, value in friction.items():
@@ -104,7 +105,7 @@ def _screen(bench: Bench, name: str, row: Samples, facts: dict[str, Any]) -> dic
     return _document(f"{name} screen", facts, "Friction") | head | groups
 
 
-def _bench(bench: Bench, out: Path, parts: list[str], row: Samples) -> dict[str, Any]:
+def _bench(bench: Bench, out: Path, parts: list[str], row: Floats) -> dict[str, Any]:
     shipped = bench.path.resolve().parent == resources.shipped("config", "benches").resolve()
     base = bench.path.name if shipped else str(bench.path.resolve())
     load = unpack(Parameters, row).load

@@ -5,10 +5,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.failure import Failure, Unfit
 from hilplant.identify.experiment import Run, Start
-from hilplant.measurements.measurement import Measurement, Samples, running
+from hilplant.measurements.measurement import Measurement, running
 from hilplant.measurements.outliers import near_steps, spikes
 from hilplant.measurements.park import rising_edges
 from hilplant.signals import INPUT_INDEX
@@ -53,7 +54,7 @@ def make_run(data: Measurement, bench: Bench, screen: float) -> Run:
     )  # fmt: skip
 
 
-def _inputs(data: Measurement, bench: Bench, screen: float) -> NDArray[np.float64]:
+def _inputs(data: Measurement, bench: Bench, screen: float) -> Floats:
     inputs = np.tile(bench.input_row, (len(data), 1))
     inputs[:, INPUT_INDEX["relay_on"]] = 1.0
     inputs[:, INPUT_INDEX["relay_fast"]] = data.fast
@@ -62,7 +63,7 @@ def _inputs(data: Measurement, bench: Bench, screen: float) -> NDArray[np.float6
     return inputs
 
 
-def _driving_v(data: Measurement) -> Samples:
+def _driving_v(data: Measurement) -> Floats:
     """Return the voltage without the voltmeter's spikes, which the motor did not see."""
     spike = spikes(data.voltage_v, near_steps(data.voltage_v, data.period_s))
     places = np.arange(len(data))
@@ -90,7 +91,7 @@ def _start(data: Measurement, bench: Bench) -> tuple[int, Start]:
     return first, Start(False, float(data.current_a[first]), 1.0, speed, 0.3 * speed, 2.0 * speed)
 
 
-def _speeds(data: Measurement, edges: NDArray[np.intp], first: int) -> Samples:
+def _speeds(data: Measurement, edges: NDArray[np.intp], first: int) -> Floats:
     """Return the mean speed of the crank over the turn that ends at each edge, times at rest left out [rad/s]."""
     on = running(data)
     bounds = [first, *edges.tolist()]

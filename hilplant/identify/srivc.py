@@ -14,14 +14,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from hilplant.arrays import Flags, Floats
 from hilplant.failure import Failure
 from hilplant.identify.breakaway import torque_part
 from hilplant.identify.filters import filtered, free_answers, held_answer, stable
 from hilplant.identify.transfer_function import TransferFunction
-from hilplant.measurements.measurement import Mask, Samples
 
 #: Rounds until the relative change of all coefficients is below the tolerance; after the cap a search takes over.
 ROUNDS, TOLERANCE = 40, 1e-7
@@ -41,9 +40,9 @@ class Stretch(NamedTuple):
     For the first `rest` samples the motor stands still at 0 V; 0: it turns.
     """
 
-    voltage_v: Samples
-    current_a: Samples
-    valid: Mask
+    voltage_v: Floats
+    current_a: Floats
+    valid: Flags
     rest: int = 0
 
 
@@ -52,7 +51,7 @@ class TransferFit(NamedTuple):
 
     function: TransferFunction
     friction: float  # c = K T/(L J) [A/s^2]; 0 when not asked for
-    covariance: NDArray[np.float64]
+    covariance: Floats
     residual_a: float  # root mean square of current minus model
     rounds: int
 
@@ -60,8 +59,8 @@ class TransferFit(NamedTuple):
 class _Columns(NamedTuple):
     """Filtered signals of one stretch."""
 
-    voltage: NDArray[np.float64]  # s u/A, u/A (, 1/A of a unit step), and the two answers to a state at the start
-    current: NDArray[np.float64]  # s y/A, y/A
+    voltage: Floats  # s u/A, u/A (, 1/A of a unit step), and the two answers to a state at the start
+    current: Floats  # s y/A, y/A
 
 
 def fit(stretches: Sequence[Stretch], period_s: float, friction: bool = False) -> TransferFit:
@@ -74,7 +73,7 @@ def fit(stretches: Sequence[Stretch], period_s: float, friction: bool = False) -
 
     """
     model = np.array([2.0 * FIRST_POLE_1_S, FIRST_POLE_1_S**2])  # a1, a0
-    theta: NDArray[np.float64] | None = None
+    theta: Floats | None = None
     for count in range(1, ROUNDS + 1):
         last = theta
         theta = _round(stretches, period_s, friction, model, theta)
@@ -84,7 +83,7 @@ def fit(stretches: Sequence[Stretch], period_s: float, friction: bool = False) -
     return _result(stretches, period_s, friction, _searched(stretches, period_s, friction), ROUNDS)
 
 
-def _searched(stretches: Sequence[Stretch], period_s: float, friction: bool) -> NDArray[np.float64]:
+def _searched(stretches: Sequence[Stretch], period_s: float, friction: bool) -> Floats:
     """Find the least output error by search over a1 and a0 where the rounds go in circles; the rest is linear.
 
     Where the rounds do settle, it is at the same place.
@@ -99,18 +98,18 @@ def _searched(stretches: Sequence[Stretch], period_s: float, friction: bool) -> 
 
 
 def _searched_from(
-    starts: Sequence[Samples], stretches: Sequence[Stretch], period_s: float, torques: Sequence[Samples | None]
-) -> NDArray[np.float64]:
+    starts: Sequence[Floats], stretches: Sequence[Stretch], period_s: float, torques: Sequence[Floats | None]
+) -> Floats:
     current = np.concatenate([stretch.current_a[stretch.valid] for stretch in stretches])
 
-    def exogenous(logs: Samples) -> NDArray[np.float64]:
+    def exogenous(logs: Floats) -> Floats:
         model = np.exp(logs)
         pairs = zip(stretches, torques, strict=True)
         rows = [_columns(stretch, period_s, torque, model).voltage for stretch, torque in pairs]
         wide = [_widened(row, place, len(rows)) for place, row in enumerate(rows)]
         return np.vstack([each[stretch.valid] for each, stretch in zip(wide, stretches, strict=True)])
 
-    def misfit(logs: Samples) -> Samples:
+    def misfit(logs: Floats) -> Floats:
         columns = exogenous(logs)
         return np.asarray(current - columns @ np.linalg.lstsq(columns, current, rcond=None)[0], np.float64)
 
@@ -126,14 +125,14 @@ def _searched_from(
     return np.concatenate([np.exp(found.x), np.linalg.lstsq(columns, current, rcond=None)[0]])
 
 
-def simulated(function: TransferFunction, voltage_v: Samples, period_s: float) -> Samples:
+def simulated(function: TransferFunction, voltage_v: Floats, period_s: float) -> Floats:
     """Return the current [A] from rest for a voltage that is held between samples."""
     return held_answer(np.array([function.b1, function.b0]), np.array([function.a1, function.a0]), voltage_v, period_s)
 
 
 def _round(
-    stretches: Sequence[Stretch], period_s: float, friction: bool, model: Samples, theta: NDArray[np.float64] | None
-) -> NDArray[np.float64]:
+    stretches: Sequence[Stretch], period_s: float, friction: bool, model: Floats, theta: Floats | None
+) -> Floats:
     """One regression with the filter 1/A of `model`; the first one, without a model's current, is least squares."""
     left, right = [], []
     torques = _torques(stretches, period_s, friction, theta)
@@ -151,25 +150,25 @@ def _round(
     return _solved(np.sum(left, axis=0), np.sum(right, axis=0))
 
 
-def _solved(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
+def _solved(left: Floats, right: Floats) -> Floats:
     scale = np.sqrt(np.abs(np.diag(left)))
     if not np.all(np.isfinite(left)) or np.any(scale == 0.0):
         raise Failure("the transfer function cannot be told from these data: voltage or current does not change")
     scaled = left / np.outer(scale, scale)
     if np.linalg.cond(scaled) > 1e14:
         raise Failure("the transfer function cannot be told from these data: record steps of the voltage")
-    solution: NDArray[np.float64] = np.linalg.solve(scaled, right / scale) / scale
+    solution: Floats = np.linalg.solve(scaled, right / scale) / scale
     return solution
 
 
 def _torques(
-    stretches: Sequence[Stretch], period_s: float, friction: bool, theta: Samples | None
-) -> list[Samples | None]:
+    stretches: Sequence[Stretch], period_s: float, friction: bool, theta: Floats | None
+) -> list[Floats | None]:
     """Return the dry torque in each stretch in parts of T; None each where it is not asked for."""
     return [torque_part(each.voltage_v, each.rest, period_s, theta) if friction else None for each in stretches]
 
 
-def _columns(stretch: Stretch, period_s: float, torque: Samples | None, model: Samples) -> _Columns:
+def _columns(stretch: Stretch, period_s: float, torque: Floats | None, model: Floats) -> _Columns:
     count = len(stretch.current_a)
     blocks = [filtered(stretch.voltage_v, model, period_s, held=True)]
     if torque is not None:
@@ -178,7 +177,7 @@ def _columns(stretch: Stretch, period_s: float, torque: Samples | None, model: S
     return _Columns(np.hstack(blocks), filtered(stretch.current_a, model, period_s, held=False))
 
 
-def _widened(columns: NDArray[np.float64], place: int, stretches: int) -> NDArray[np.float64]:
+def _widened(columns: Floats, place: int, stretches: int) -> Floats:
     """Give each stretch its own two columns for the state at its start."""
     common = columns.shape[1] - 2
     wide = np.zeros((len(columns), common + 2 * stretches))
@@ -187,9 +186,7 @@ def _widened(columns: NDArray[np.float64], place: int, stretches: int) -> NDArra
     return wide
 
 
-def _result(
-    stretches: Sequence[Stretch], period_s: float, friction: bool, theta: NDArray[np.float64], count: int
-) -> TransferFit:
+def _result(stretches: Sequence[Stretch], period_s: float, friction: bool, theta: Floats, count: int) -> TransferFit:
     """Collect the coefficients and their covariance."""
     gradients, errors = [], []
     torques = _torques(stretches, period_s, friction, theta)
@@ -206,9 +203,7 @@ def _result(
     return TransferFit(function, float(theta[4]) if friction else 0.0, covariance, residual_a, count)
 
 
-def _covariance(
-    gradients: Sequence[NDArray[np.float64]], errors: Sequence[Samples], period_s: float
-) -> NDArray[np.float64]:
+def _covariance(gradients: Sequence[Floats], errors: Sequence[Floats], period_s: float) -> Floats:
     """Return the covariance from sums over blocks, so that errors which hang together count; that of noise at least."""
     information = np.sum([gradient.T @ gradient for gradient in gradients], axis=0)
     inverse = np.linalg.pinv(information, rcond=1e-20, hermitian=True)
@@ -225,9 +220,7 @@ def _covariance(
     return np.asarray(blocks * np.outer(widening, widening), np.float64)
 
 
-def _widened_by_colour(
-    gradients: Sequence[NDArray[np.float64]], errors: Sequence[Samples], period_s: float
-) -> NDArray[np.float64]:
+def _widened_by_colour(gradients: Sequence[Floats], errors: Sequence[Floats], period_s: float) -> Floats:
     """Return the covariance from few steps: that of noise, widened in each direction where errors hang together.
 
     Noise of the voltage comes through the motor, so that neighbouring errors are alike. In each singular direction

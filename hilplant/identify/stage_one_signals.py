@@ -4,11 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.identify.breakaway import torque_part
 from hilplant.identify.filters import filtered, held_answer
 from hilplant.identify.first_stage import ModeResult, first_stage
 from hilplant.identify.srivc import TransferFit, simulated
-from hilplant.measurements.measurement import Measurement, Samples, running
+from hilplant.measurements.measurement import Measurement, running
 
 
 class ModeSignals(NamedTuple):
@@ -19,19 +20,19 @@ class ModeSignals(NamedTuple):
 
     mode: str
     result: ModeResult
-    time_s: Samples
-    voltage_v: Samples
-    current_a: Samples
-    filtered_v: Samples
-    filtered_a: Samples
-    answer_a: Samples
+    time_s: Floats
+    voltage_v: Floats
+    current_a: Floats
+    filtered_v: Floats
+    filtered_a: Floats
+    answer_a: Floats
 
     @property
     def rms_a(self) -> float:
         """Root mean square of the answer's error."""
         return float(np.sqrt(np.mean((self.answer_a - self.current_a) ** 2)))
 
-    def columns(self) -> dict[str, Samples]:
+    def columns(self) -> dict[str, Floats]:
         """Return time and all signals by name."""
         names = ("time_s", "voltage_v", "current_a", "filtered_v", "filtered_a", "answer_a")
         return {name: getattr(self, name) for name in names}
@@ -57,7 +58,7 @@ def _signals(data: Measurement, mode: str, result: ModeResult) -> ModeSignals:
     return ModeSignals(mode, result, data.time_s[part], voltage, current, behind[0], behind[1], answer)
 
 
-def answer_from_rest(fit: TransferFit, voltage_v: Samples, period_s: float) -> Samples:
+def answer_from_rest(fit: TransferFit, voltage_v: Floats, period_s: float) -> Floats:
     """Return the current [A] of a transfer function with its dry torque for a voltage that begins at rest."""
     rest = int(np.argmax(voltage_v > 0.0)) if np.any(voltage_v > 0.0) else len(voltage_v)
     function = fit.function

@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.identify.cost import Cost
 from hilplant.identify.genetic import Generation, Outcome
 from hilplant.identify.validation import Comparison
-from hilplant.measurements.measurement import Samples
 
 TRANSFER_FUNCTION, GLOBAL_SEARCH, LEAST_SQUARES = 1, 2, 3
 ALL = (TRANSFER_FUNCTION, GLOBAL_SEARCH, LEAST_SQUARES)
@@ -35,16 +35,16 @@ def parse_stages(text: str) -> tuple[int, ...]:
 class StagedValues(NamedTuple):
     """What some stages without the last one found: values and cost, without intervals; the search if there was one."""
 
-    values: Samples
+    values: Floats
     cost: float
     outcome: Outcome | None
-    row: Samples
+    row: Floats
     fitted: list[Comparison]
     held_out: list[Comparison]
     seconds: float
 
 
-def no_search(cost: Cost, values: Samples) -> Outcome:
+def no_search(cost: Cost, values: Floats) -> Outcome:
     """Return what the global search would say had it stayed where it began."""
     found = float(cost(values[np.newaxis])[0])
     return Outcome(values.copy(), found, (Generation(1, found, found),))

@@ -5,17 +5,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.identify.first_stage import ModeResult, first_stage
 from hilplant.identify.parameters import Choice
-from hilplant.measurements.measurement import Measurement, Samples
+from hilplant.measurements.measurement import Measurement
 from hilplant.motor_bench.bench_measurements import quantity
 
 
 class StartingPoint(NamedTuple):
     """Values about which the search space is laid by (5.22), what stage 1 itself found, and how it went."""
 
-    values: Samples
+    values: Floats
     first_stage: dict[str, float]
     notes: tuple[str, ...]
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.identify.advice import Advice, advice
 from hilplant.identify.cost import Cost, cost_of
@@ -22,7 +23,6 @@ from hilplant.identify.residuals import LeastSquares, expected_noise
 from hilplant.identify.stages import ALL, GLOBAL_SEARCH, StagedValues, no_search
 from hilplant.identify.uncertainty import Identifiability, Spread, spread, verdicts
 from hilplant.identify.validation import EXPLAINED, Comparison, compare, unexplained
-from hilplant.measurements.measurement import Samples
 from hilplant.models.load import REDUCED
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.progress import OnProgress, ProgressReport, unseen
@@ -41,7 +41,7 @@ class Task:
     bench: Bench
     runs: Sequence[Run]
     choice: Choice
-    about: Samples
+    about: Floats
     held_out: Sequence[Run] = ()
     settings: SearchSettings = _TABLE_5_7
     seed: int = 0
@@ -88,7 +88,7 @@ class Identified(NamedTuple):
     intervals: list[ConfidenceInterval]
     forces: list[FrictionForce]
     advice: list[Advice]
-    row: Samples
+    row: Floats
     fitted: list[Comparison]
     held_out: list[Comparison]
     times: Times
@@ -188,7 +188,7 @@ class _Computed:
     def __init__(self, evaluate: Evaluate) -> None:
         self.evaluate, self.count = evaluate, 0
 
-    def __call__(self, sets: Samples) -> Samples:
+    def __call__(self, sets: Floats) -> Floats:
         self.count += len(sets)
         return self.evaluate(sets)
 
@@ -212,7 +212,7 @@ def refined(task: Task, outcome: Outcome) -> Solution:
     return min(solutions, key=lambda solution: solution.noise.current_a)
 
 
-def _starts(task: Task, outcome: Outcome) -> list[Samples]:
+def _starts(task: Task, outcome: Outcome) -> list[Floats]:
     """Return where to begin: at stage 2's end, with its motor and the friction known beforehand, where its space lay.
 
     Stage 2 may end where the force's factor of (4.50) is below 0: no friction, so no derivative says which way out.

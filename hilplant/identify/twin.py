@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.identify.sequence import OFF, SequenceStage, play
-from hilplant.measurements.measurement import Measurement, Samples
+from hilplant.measurements.measurement import Measurement
 from hilplant.models.plant import tick
 from hilplant.models.records import STATE_INDEX
 from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
@@ -81,8 +81,8 @@ def stages(condition: TwinCondition, late_s: Sequence[float] = ()) -> list[Seque
 class Clean(NamedTuple):
     """What the plant did: its inputs and outputs, a row for each tick."""
 
-    inputs: NDArray[np.float64]
-    outputs: NDArray[np.float64]
+    inputs: Floats
+    outputs: Floats
 
 
 def chance(bench: Bench, condition: TwinCondition, seed: int) -> Chance:
@@ -99,8 +99,8 @@ def played(bench: Bench, condition: TwinCondition, ripple: Corruption = CLEAN, d
     if drawn is not None:
         angle = bench.parameters.park_switch.angle_rad + drawn.start_rad
         state[STATE_INDEX["crank_angle_rad"]] = angle % TURN_RAD
-    rows: list[Samples] = []
-    made: list[Samples] = []
+    rows: list[Floats] = []
+    made: list[Floats] = []
     inputs[INPUT_INDEX["screen"]] = condition.screen
     step_s = bench.step_ns / SECOND_NS
 
@@ -145,7 +145,7 @@ def corrupted(clean: Clean, how: Corruption, step_s: float, seed: int) -> Measur
     return Measurement(time_s, voltage, current, park, fast, valid, step_s, source="twin")
 
 
-def _jittered(contact: Samples, most: float, random: np.random.Generator) -> Samples:
+def _jittered(contact: Floats, most: float, random: np.random.Generator) -> Floats:
     """Move each edge by up to `most` samples either way."""
     if most <= 0.0:
         return contact.copy()

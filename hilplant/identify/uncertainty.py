@@ -7,13 +7,10 @@ is named, with those that it cannot be told from, and with an experiment that wo
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.identify.local_search import Solution
 from hilplant.identify.parameters import search_space
-from hilplant.measurements.measurement import Samples
-
-Matrix = NDArray[np.float64]
 
 #: Two-sided 95 % of the normal distribution, and the rise of the sum of squares that belongs to it.
 NORMAL_95, RISE_95 = 1.959964, 3.841459
@@ -28,8 +25,8 @@ BLOCK_S = 0.25
 class Spread(NamedTuple):
     """Covariance of the scaled unknowns, and by how much correlated errors widen each variance (1: not at all)."""
 
-    covariance: Matrix
-    widening: Samples
+    covariance: Floats
+    widening: Floats
 
 
 class Identifiability(NamedTuple):
@@ -58,7 +55,7 @@ def spread(solution: Solution) -> Spread:
     return Spread(covariance, np.sum(widened**2, axis=1) / np.sum(independent**2, axis=1))
 
 
-def _block_sums(solution: Solution, left: Matrix) -> Matrix:
+def _block_sums(solution: Solution, left: Floats) -> Floats:
     """Return sums over blocks of residual times direction, [blocks, directions]; each park edge is a block."""
     sums, runs = [], solution.problem.runs
     for run, (currents, edges) in zip(runs, solution.problem.parts(), strict=True):
@@ -87,7 +84,7 @@ def verdicts(solution: Solution, known: Spread) -> list[Identifiability]:
     return found
 
 
-def correlation(solution: Solution, known: Spread) -> Matrix:
+def correlation(solution: Solution, known: Spread) -> Floats:
     """Return the correlation of the parameters."""
     count = solution.problem.parameters
     errors = np.sqrt(np.diag(known.covariance))[:count]

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.identify.experiment import Run, simulate_run
 from hilplant.identify.local_search import search
 from hilplant.identify.parameters import Choice
 from hilplant.identify.residuals import LeastSquares, edge_errors_s, expected_noise
-from hilplant.measurements.measurement import Samples
 
 
 class RunError(NamedTuple):
@@ -35,9 +34,9 @@ class Comparison(NamedTuple):
 
     run: Run
     error: RunError
-    simulated_a: Samples
-    park_steps: Samples
-    edge_errors_s: Samples
+    simulated_a: Floats
+    park_steps: Floats
+    edge_errors_s: Floats
 
 
 #: Up to this many times its noise what is left of the current is explained by it.
@@ -54,12 +53,12 @@ def unexplained(compared: Sequence[Comparison]) -> list[str]:
     ]
 
 
-def compare(runs: Sequence[Run], row: NDArray[np.float64], tables: NDArray[np.float64]) -> list[Comparison]:
+def compare(runs: Sequence[Run], row: Floats, tables: Floats) -> list[Comparison]:
     """Hold parameters against recordings; only start and offset of each are fitted."""
     return [_compared(run, row, tables) for run in runs]
 
 
-def _compared(run: Run, row: NDArray[np.float64], tables: NDArray[np.float64]) -> Comparison:
+def _compared(run: Run, row: Floats, tables: Floats) -> Comparison:
     noise = expected_noise([run])
     nothing = np.zeros(0)
     found = search(LeastSquares([run], Choice([], row), tables, noise, nothing), nothing)
@@ -75,5 +74,5 @@ def _compared(run: Run, row: NDArray[np.float64], tables: NDArray[np.float64]) -
     return Comparison(run, error, current, made.park_steps[0], late)
 
 
-def _rms(values: Samples) -> float:
+def _rms(values: Floats) -> float:
     return float(np.sqrt(np.mean(values**2)))

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from hilplant.measurements.measurement import Mask, Samples
+from hilplant.arrays import Flags, Floats
 
 #: The window about a step in which the current's answer is looked at [s].
 BEFORE_S, AFTER_S = 0.025, 0.04
@@ -30,7 +30,7 @@ class DelayEstimate(NamedTuple):
     samples: int
 
 
-def rest_offset(values: Samples, voltage_v: Samples, period_s: float) -> DelayEstimate | None:
+def rest_offset(values: Floats, voltage_v: Floats, period_s: float) -> DelayEstimate | None:
     """Return the mean of a channel while the motor rests with its terminals at 0 V; None when it never does."""
     rest = resting(voltage_v, period_s)
     count = int(np.count_nonzero(rest))
@@ -39,7 +39,7 @@ def rest_offset(values: Samples, voltage_v: Samples, period_s: float) -> DelayEs
     return DelayEstimate(float(np.mean(values[rest])), float(np.std(values[rest]) / np.sqrt(count)), count)
 
 
-def resting(voltage_v: Samples, period_s: float) -> Mask:
+def resting(voltage_v: Floats, period_s: float) -> Flags:
     """Say where the motor rests with its terminals at 0 V.
 
     There the terminal voltage has been below 2 % of the highest for `REST_S`, or since the file began: braking is over
@@ -51,7 +51,7 @@ def resting(voltage_v: Samples, period_s: float) -> Mask:
     return np.asarray(off & ((places - last_on) * period_s > REST_S), np.bool_)
 
 
-def voltage_steps(voltage_v: Samples, period_s: float) -> list[int]:
+def voltage_steps(voltage_v: Floats, period_s: float) -> list[int]:
     """Return the first sample after each jump of the voltage between two levels that hold for a while."""
     jump = np.abs(np.diff(voltage_v))
     height = STEP_PART * float(np.ptp(voltage_v))
@@ -69,7 +69,7 @@ def voltage_steps(voltage_v: Samples, period_s: float) -> list[int]:
     return [step for place, step in enumerate(steps) if place == 0 or step - steps[place - 1] > 2]
 
 
-def current_shift(current_a: Samples, voltage_v: Samples, period_s: float) -> DelayEstimate | None:
+def current_shift(current_a: Floats, voltage_v: Floats, period_s: float) -> DelayEstimate | None:
     """Return by how much [s] the current's channel is late against the voltage's; None without three clear steps.
 
     Shift and both time constants are common to all steps; offset, drift and height are each step's own (separable
@@ -82,7 +82,7 @@ def current_shift(current_a: Samples, voltage_v: Samples, period_s: float) -> De
     time_s = np.arange(-before, after) * period_s
     windows = [current_a[step - before : step + after] for step in steps]
 
-    def residuals(shape: Samples) -> Samples:
+    def residuals(shape: Floats) -> Floats:
         basis = _basis(time_s - shape[0], np.exp(shape[1]), np.exp(shape[2]))
         return np.concatenate([window - basis @ np.linalg.lstsq(basis, window, rcond=None)[0] for window in windows])
 
@@ -96,7 +96,7 @@ def current_shift(current_a: Samples, voltage_v: Samples, period_s: float) -> De
     return DelayEstimate(float(fit.x[0]), float(np.sqrt(covariance[0, 0])), len(steps))
 
 
-def _clear_steps(current_a: Samples, voltage_v: Samples, period_s: float) -> list[int]:
+def _clear_steps(current_a: Floats, voltage_v: Floats, period_s: float) -> list[int]:
     """Keep the steps that the current answers well above its noise."""
     before, after = round(BEFORE_S / period_s), round(AFTER_S / period_s)
     noise = 1.4826 * float(np.median(np.abs(np.diff(current_a)))) / np.sqrt(2.0)
@@ -108,7 +108,7 @@ def _clear_steps(current_a: Samples, voltage_v: Samples, period_s: float) -> lis
     return clear
 
 
-def _basis(time_s: Samples, electrical_s: float, mechanical_s: float) -> Samples:
+def _basis(time_s: Floats, electrical_s: float, mechanical_s: float) -> Floats:
     after = np.maximum(time_s, 0.0)
     answer = np.exp(-after / mechanical_s) - np.exp(-after / electrical_s)
     return np.column_stack([np.ones_like(time_s), time_s, answer])

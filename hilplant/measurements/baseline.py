@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.measurements.alignment import rest_offset
-from hilplant.measurements.measurement import Samples
 
 #: Offsets below this are none [A, V].
 LEAST_OFFSET = 1e-3
@@ -23,12 +23,12 @@ class Correction(NamedTuple):
 class Corrected(NamedTuple):
     """Voltage [V] and current [A] as they are used, and what was done to them."""
 
-    voltage: Samples
-    current: Samples
+    voltage: Floats
+    current: Floats
     notes: tuple[str, ...]
 
 
-def corrected(voltage: Samples, current: Samples, step_s: float, how: Correction) -> Corrected:
+def corrected(voltage: Floats, current: Floats, step_s: float, how: Correction) -> Corrected:
     """Take the offsets off, and filter where that is asked for."""
     current, notes = _without_offset(current, voltage, step_s, how.offset_a)
     level = rest_offset(voltage, voltage, step_s)
@@ -42,8 +42,8 @@ def corrected(voltage: Samples, current: Samples, step_s: float, how: Correction
 
 
 def _without_offset(
-    current: Samples, voltage: Samples, step_s: float, told_a: float | None
-) -> tuple[Samples, tuple[str, ...]]:
+    current: Floats, voltage: Floats, step_s: float, told_a: float | None
+) -> tuple[Floats, tuple[str, ...]]:
     if told_a is not None:
         return current - told_a, (f"offset of the current: {told_a:.4g} A subtracted, as told",)
     found = rest_offset(current, voltage, step_s)
@@ -55,7 +55,7 @@ def _without_offset(
     return current - found.value, (f"offset of the current: {told} subtracted",)
 
 
-def low_pass(values: Samples, period_s: float, corner_hz: float) -> Samples:
+def low_pass(values: Floats, period_s: float, corner_hz: float) -> Floats:
     """Return the values behind a Butterworth low-pass of fourth order that runs forwards, then backwards.
 
     Raises

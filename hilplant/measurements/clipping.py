@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hilplant.measurements.measurement import DataFinding, Measurement, Samples
+from hilplant.arrays import Floats
+from hilplant.measurements.measurement import DataFinding, Measurement
 
 #: How far before a plateau its slope is looked at [s], and samples that make a plateau without noise on it, with noise.
 BEFORE_S, FEWEST, FEWEST_NOISY = 0.002, 3, 8
@@ -46,7 +47,7 @@ def clipped(data: Measurement, native_period_s: float) -> Iterable[DataFinding]:
             yield DataFinding("clipped_current", text)
 
 
-def _hits(values: Samples, before: int) -> list[slice]:
+def _hits(values: Floats, before: int) -> list[slice]:
     """Return the plateaus at the upper limit, exact ones, else those with noise on them."""
     span, top = float(np.ptp(values)), float(np.max(values))
     if span == 0.0 or top < LEAST_PART * span:
@@ -60,7 +61,7 @@ def _hits(values: Samples, before: int) -> list[slice]:
     return [hit for hit in hits if np.median(values[hit]) > LEAST_PART * span]
 
 
-def _plateaus(values: Samples, wanted: _Plateau, before: int) -> list[slice]:
+def _plateaus(values: Floats, wanted: _Plateau, before: int) -> list[slice]:
     low = float(np.max(values)) - wanted.height
     flat = np.concatenate([[0], (values >= low).astype(np.int8), [0]])
     starts, ends = np.flatnonzero(np.diff(flat) > 0), np.flatnonzero(np.diff(flat) < 0)
@@ -74,7 +75,7 @@ def _plateaus(values: Samples, wanted: _Plateau, before: int) -> list[slice]:
     ]
 
 
-def _level(values: Samples, noise: float) -> bool:
+def _level(values: Floats, noise: float) -> bool:
     """Say whether samples scatter as noise alone does, about a level that stays; without those at both ends."""
     if np.isinf(noise):
         return True

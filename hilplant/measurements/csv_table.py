@@ -9,10 +9,10 @@ import numpy as np
 import pyarrow as pa
 from pyarrow import csv
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.measurements.cells import moment_of, number_of
 from hilplant.measurements.csv_layout import Layout, layout_of
-from hilplant.measurements.measurement import Samples
 
 #: Lines in which header, separator and decimal sign are looked for, and characters of one line that are looked at.
 _HEAD_LINES, _LONGEST_LINE = 5000, 20_000
@@ -26,7 +26,7 @@ class Table(NamedTuple):
     `clock` is start and distance of the samples [s] where the head says them.
     """
 
-    columns: dict[str, Samples]
+    columns: dict[str, Floats]
     units: dict[str, str]
     first_line: int
     clock: tuple[float, float] | None = None
@@ -108,7 +108,7 @@ def _parsed(content: bytes, layout: Layout, as_text: set[str]) -> pa.Table:
     )  # fmt: skip
 
 
-def _converted(path: Path, cells: list[str | None], kind: str, layout: Layout) -> Samples:
+def _converted(path: Path, cells: list[str | None], kind: str, layout: Layout) -> Floats:
     """Read the cells of a column one by one; dates in seconds from the first."""
     values = np.full((len(cells), 2), np.nan)  # days, and seconds or the number itself
     for index, cell in enumerate(cells):
@@ -123,7 +123,7 @@ def _converted(path: Path, cells: list[str | None], kind: str, layout: Layout) -
     return seconds if kind == "number" else _since_first(days, seconds)
 
 
-def _since_first(days: Samples, seconds: Samples) -> Samples:
+def _since_first(days: Floats, seconds: Floats) -> Floats:
     """Return seconds from the first moment; a time of the day alone goes on behind midnight."""
     if not np.any(days):
         days = np.concatenate([[0.0], np.cumsum(np.diff(seconds) < -43200.0)])

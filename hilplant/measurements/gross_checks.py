@@ -4,7 +4,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from hilplant.measurements.measurement import DataFinding, Measurement, Samples, running
+from hilplant.arrays import Floats
+from hilplant.measurements.measurement import DataFinding, Measurement, running
 
 #: A wiper motor at work shows V/I between about its resistance (blocked) and some ten ohms (no load) [ohm].
 LOWEST_OHM, HIGHEST_OHM = 0.15, 60.0
@@ -43,13 +44,13 @@ def swapped(data: Measurement) -> Iterable[DataFinding]:
         yield DataFinding("swapped_columns", text)
 
 
-def _restlessness(values: Samples, lag: int) -> float:
+def _restlessness(values: Floats, lag: int) -> float:
     """Return the usual change over `lag` samples per mean size: near 0 for a supply, large for a current."""
     size = float(np.mean(np.abs(values)))
     return float(np.median(np.abs(values[lag:] - values[:-lag]))) / size if size > 0.0 and len(values) > lag else 0.0
 
 
-def _two_levels(values: Samples) -> bool:
+def _two_levels(values: Floats) -> bool:
     low, high = float(np.min(values)), float(np.max(values))
     near = np.minimum(values - low, high - values)
     return bool(np.all(near <= 0.02 * (high - low)))

@@ -4,10 +4,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Samples = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from hilplant.arrays import Flags, Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,8 +16,8 @@ class Channel:
     as a signal does that is sent when it changes; others are straight lines between samples.
     """
 
-    time_s: Samples
-    values: Samples
+    time_s: Floats
+    values: Floats
     unit: str = ""
     held: bool = False
 
@@ -55,12 +53,12 @@ class Measurement:
     `notes` say what was done to the data, in the order in which it was done.
     """
 
-    time_s: Samples
-    voltage_v: Samples
-    current_a: Samples
-    park: Samples
-    fast: Samples
-    valid: Mask
+    time_s: Floats
+    voltage_v: Floats
+    current_a: Floats
+    park: Floats
+    fast: Floats
+    valid: Flags
     period_s: float
     source: str = ""
     sha256: str = ""
@@ -68,7 +66,7 @@ class Measurement:
     notes: tuple[str, ...] = ()
 
     @property
-    def park_steps(self) -> Samples:
+    def park_steps(self) -> Floats:
         """The staircase of 5.2: how many times the park contact has closed up to each sample."""
         from hilplant.measurements.park import staircase
 
@@ -79,6 +77,6 @@ class Measurement:
         return len(self.time_s)
 
 
-def running(data: Measurement) -> Mask:
+def running(data: Measurement) -> Flags:
     """Say where the motor is on: the terminal voltage above a tenth of its highest."""
     return np.asarray(np.abs(data.voltage_v) > 0.1 * float(np.max(np.abs(data.voltage_v))), dtype=np.bool_)

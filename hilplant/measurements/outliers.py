@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.ndimage import maximum_filter1d, median_filter
 
-from hilplant.measurements.measurement import Mask, Samples
+from hilplant.arrays import Flags, Floats
 
 #: Samples of the running median; a spike of up to two samples stands out against it.
 WINDOW = 7
@@ -13,7 +13,7 @@ DEVIATIONS = 8.0
 TRANSIENT_S = 0.05
 
 
-def spikes(values: Samples, spared: Mask | None = None) -> Mask:
+def spikes(values: Floats, spared: Flags | None = None) -> Flags:
     """Flag samples far from the median of their `WINDOW` neighbours (Hampel's rule, with one scale for the whole file).
 
     The scale is the median distance from the running median, at least a millionth of the values' range; a sample is
@@ -25,7 +25,7 @@ def spikes(values: Samples, spared: Mask | None = None) -> Mask:
     return np.asarray(flagged & ~spared if spared is not None else flagged, dtype=np.bool_)
 
 
-def near_steps(values: Samples, period_s: float) -> Mask:
+def near_steps(values: Floats, period_s: float) -> Flags:
     """Say which samples lie within `TRANSIENT_S` of a jump of a voltage that stays."""
     before = median_filter(values, 5, mode="nearest", origin=2)
     after = median_filter(values, 5, mode="nearest", origin=-2)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hilplant.measurements.measurement import Samples
+from hilplant.arrays import Floats
 
 #: A contact is quiet for at least this long before a change counts [s].
 DEBOUNCE_S = 0.003
@@ -17,13 +17,13 @@ DEBOUNCE_S = 0.003
 class ParkSignal(NamedTuple):
     """A park signal as open (0) and closed (1), and how it was told apart."""
 
-    closed: Samples
+    closed: Floats
     threshold: float
     inverted: bool
     bounces: int
 
 
-def contact(values: Samples, period_s: float, inverted: bool | None = None) -> ParkSignal:
+def contact(values: Floats, period_s: float, inverted: bool | None = None) -> ParkSignal:
     """Tell closed from open at the middle between the signal's two levels, and remove bounces.
 
     With `inverted` None, the contact counts as closed at the level that the signal has for the smaller part of the
@@ -41,7 +41,7 @@ def contact(values: Samples, period_s: float, inverted: bool | None = None) -> P
     return ParkSignal(closed, threshold, inverted, bounces)
 
 
-def debounced(raw: Samples, quiet: int) -> Samples:
+def debounced(raw: Floats, quiet: int) -> Floats:
     """Take the first edge of each bounce: after a change nothing counts until the signal was quiet for `quiet` samples.
 
     The edge keeps its instant, unlike behind a filter. A pulse shorter than `quiet` samples is a disturbance and goes.
@@ -62,19 +62,19 @@ def debounced(raw: Samples, quiet: int) -> Samples:
     return out
 
 
-def rising_edges(closed: Samples) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+def rising_edges(closed: Floats) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     """Return the samples at which the contact closes: one for each turn of the crank."""
     return np.flatnonzero((closed[1:] > 0.5) & (closed[:-1] <= 0.5)) + 1
 
 
-def staircase(closed: Samples) -> Samples:
+def staircase(closed: Floats) -> Floats:
     """Return the number of closings up to each sample: the "park step" of 5.2."""
     steps = np.zeros(len(closed))
     steps[rising_edges(closed)] = 1.0
     return np.cumsum(steps)
 
 
-def turn_speeds(closed: Samples, time_s: Samples) -> tuple[Samples, Samples]:
+def turn_speeds(closed: Floats, time_s: Floats) -> tuple[Floats, Floats]:
     """Return the middle [s] of each turn between two closings, and its mean crank speed [rad/s]."""
     instants = time_s[rising_edges(closed)]
     turns_s = np.diff(instants)

@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
-from hilplant.measurements.measurement import Measurement, Samples
+from hilplant.measurements.measurement import Measurement
 from hilplant.measurements.park import rising_edges, staircase
 
 #: Cases of Figure 5-2: how much slower the simulated wiper is; the last one does not move.
@@ -17,8 +18,8 @@ class ParkCase(NamedTuple):
     """A simulated contact beside the measured one: pulses, stairs, and the mean size of both errors."""
 
     name: str
-    pulses: Samples
-    stairs: Samples
+    pulses: Floats
+    stairs: Floats
     pulse_error: float
     stair_error: float
 
@@ -44,7 +45,7 @@ def park_cases(data: Measurement) -> list[ParkCase]:
     return found
 
 
-def _slowed(data: Measurement, share: float) -> Samples:
+def _slowed(data: Measurement, share: float) -> Floats:
     """Return the contact of a wiper that turns by a share more slowly from the first closing on."""
     first = data.time_s[rising_edges(data.park)[0]]
     earlier = np.where(data.time_s > first, first + (data.time_s - first) * (1.0 - share), data.time_s)

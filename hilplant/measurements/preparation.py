@@ -6,12 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Flags, Floats
 from hilplant.failure import Failure
 from hilplant.measurements.alignment import current_shift
 from hilplant.measurements.baseline import Correction, corrected
 from hilplant.measurements.columns import Column, choose_columns, has_unit, unit_scale
 from hilplant.measurements.files import Origin, read_channels, sha256
-from hilplant.measurements.measurement import Channel, Mask, Measurement, Native, Samples
+from hilplant.measurements.measurement import Channel, Measurement, Native
 from hilplant.measurements.outliers import near_steps, spikes
 from hilplant.measurements.park import contact
 from hilplant.measurements.resampling import OnClock, checked, on_clock, own_clock, shared_clock, steadied
@@ -166,7 +167,7 @@ def _clock_notes(native: dict[str, Native], step_s: float) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _outliers(voltage: Samples, current: Samples, step_s: float, native: dict[str, Native]) -> Mask:
+def _outliers(voltage: Floats, current: Floats, step_s: float, native: dict[str, Native]) -> Flags:
     """Flag spikes; those of the current are not looked for where steps are, or where it was sampled more slowly."""
     found = spikes(voltage)
     if native["current"].period_s <= 1.5 * step_s:
@@ -174,7 +175,7 @@ def _outliers(voltage: Samples, current: Samples, step_s: float, native: dict[st
     return found
 
 
-def _counted(present: Mask, outlier: Mask) -> tuple[str, ...]:
+def _counted(present: Flags, outlier: Flags) -> tuple[str, ...]:
     missing, strange = int(np.count_nonzero(~present)), int(np.count_nonzero(outlier))
     notes = [f"{missing} of {len(present)} samples lie in gaps: bridged by a straight line, not used"] * (missing > 0)
     notes += [f"{strange} of {len(present)} samples are outliers: left as they are, not used"] * (strange > 0)
@@ -187,7 +188,7 @@ def _park_notes(threshold: float, inverted: bool, bounces: int, raw: Channel) ->
     return (f"{levels}, {late}, {len(np.unique(raw.values))} levels; its shift against the others cannot be told",)
 
 
-def _fast(on: dict[str, OnClock], mode: str | None, count: int) -> Samples:
+def _fast(on: dict[str, OnClock], mode: str | None, count: int) -> Floats:
     if mode not in (None, "slow", "fast"):
         raise Failure(f"the mode must be slow or fast, not '{mode}'")
     if "fast" in on:

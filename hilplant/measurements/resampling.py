@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Flags, Floats
 from hilplant.failure import Failure
-from hilplant.measurements.measurement import Channel, Mask, Native, Samples
+from hilplant.measurements.measurement import Channel, Native
 
 #: A distance between samples beyond this many usual ones is a gap.
 GAP_PERIODS = 1.5
@@ -26,8 +27,8 @@ QUARTZ = 2e-4
 class OnClock(NamedTuple):
     """A channel on the common clock; not `present` where its file had a gap or an empty cell."""
 
-    values: Samples
-    present: Mask
+    values: Floats
+    present: Flags
     native: Native
 
 
@@ -55,7 +56,7 @@ def checked(channel: Channel, place: str) -> tuple[Channel, Native]:
     return kept, Native(period_s, len(kept.values), int(np.count_nonzero(~finite)), float(np.max(steps, initial=0.0)))
 
 
-def repeats(values: Samples) -> int:
+def repeats(values: Floats) -> int:
     """Return how many times a logger wrote each value again: 10 where 100 Hz were written at 1 kHz; else 1."""
     changes = np.flatnonzero(np.diff(values) != 0.0)
     if len(changes) < 50:
@@ -65,7 +66,7 @@ def repeats(values: Samples) -> int:
     return usual if usual > 1 and float(np.mean(distances % usual == 0)) > 0.9 else 1
 
 
-def shared_clock(channels: list[Channel], step_s: float, source: str) -> Samples:
+def shared_clock(channels: list[Channel], step_s: float, source: str) -> Floats:
     """Return the times [s] at which all channels have values, from where the last of them begins.
 
     One that is sent when it changes keeps its value to the end.
@@ -107,7 +108,7 @@ def steadied(channel: Channel) -> Channel:
     return Channel(start + slope * numbers, channel.values, channel.unit, channel.held)
 
 
-def own_clock(voltage: Channel, clock: Samples) -> Samples:
+def own_clock(voltage: Channel, clock: Floats) -> Floats:
     """Return the clock moved onto the voltage's own samples, so that its steps stay steps.
 
     A voltage whose period is the clock's but for the error of a quartz gives that too, and no sample is met twice.
@@ -124,7 +125,7 @@ def own_clock(voltage: Channel, clock: Samples) -> Samples:
     return np.asarray(times[first] + np.arange(count) * step_s, np.float64)
 
 
-def on_clock(channel: Channel, native: Native, clock: Samples, hold: bool) -> OnClock:
+def on_clock(channel: Channel, native: Native, clock: Floats, hold: bool) -> OnClock:
     """Bring a channel onto the clock: the last value where it holds, else a straight line or the mean of each step.
 
     The mean is taken over half a step to either side, so that it shifts nothing in time.
@@ -141,15 +142,15 @@ def on_clock(channel: Channel, native: Native, clock: Samples, hold: bool) -> On
     return OnClock(values, _present(channel, native, clock, places) | hold, native)
 
 
-def _means(channel: Channel, clock: Samples, step_s: float) -> Samples:
+def _means(channel: Channel, clock: Floats, step_s: float) -> Floats:
     edges = np.searchsorted(channel.time_s, np.concatenate([clock - 0.5 * step_s, [clock[-1] + 0.5 * step_s]]))
     sums = np.concatenate([[0.0], np.cumsum(channel.values)])
     counts = np.diff(edges)
-    means: Samples = np.diff(sums[edges]) / np.maximum(counts, 1)
+    means: Floats = np.diff(sums[edges]) / np.maximum(counts, 1)
     return np.asarray(np.where(counts > 0, means, np.interp(clock, channel.time_s, channel.values)), np.float64)
 
 
-def _present(channel: Channel, native: Native, clock: Samples, places: Mask | Samples) -> Mask:
+def _present(channel: Channel, native: Native, clock: Floats, places: Flags | Floats) -> Flags:
     """Say where the clock's times lie on a sample or between two that are not too far apart."""
     index = np.asarray(places, dtype=np.intp)
     following = np.minimum(index + 1, len(channel.values) - 1)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
-from hilplant.mechanics.planar import Floats
 from hilplant.units import RAD_PER_DEG
 
 #: A number, or pairs of arm angle [deg] and coefficient with rising angles.

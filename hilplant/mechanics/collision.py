@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.design_points import GeometryError
-from hilplant.mechanics.planar import Floats, Point
+from hilplant.mechanics.planar import Point
 from hilplant.units import RAD_PER_DEG, TURN_RAD
 
 #: A straight line of a wiper at the design position, seen from the pivot of its rocker [m].

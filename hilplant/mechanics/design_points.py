@@ -5,8 +5,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.mechanics.planar import Point
 
@@ -98,7 +98,7 @@ def tilt_of(groups: Iterable[Mapping[str, Sequence[float]]]) -> float:
     return tilt if sizes[2] < _THICKNESS * math.sin(tilt) * sizes[1] else 0.0
 
 
-def _centred(points: Sequence[Sequence[float]]) -> NDArray[np.float64]:
+def _centred(points: Sequence[Sequence[float]]) -> Floats:
     rows = np.array(points, dtype=np.float64)
     return np.asarray(rows - rows.mean(axis=0))
 

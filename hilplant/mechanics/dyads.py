@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.linkage import Linkage
-from hilplant.mechanics.planar import Floats, Ground, Mechanism, Pin, Revolute, Rigid
+from hilplant.mechanics.planar import Ground, Mechanism, Pin, Revolute, Rigid
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.motion import Motion
-from hilplant.mechanics.planar import Driving, Floats, Ground, Pin, Revolute, Rigid
+from hilplant.mechanics.planar import Driving, Ground, Pin, Revolute, Rigid
 from hilplant.mechanics.wiper import Wiper
 
 

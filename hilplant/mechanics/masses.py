@@ -5,8 +5,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
-from hilplant.mechanics.planar import Body, Floats
+from hilplant.mechanics.planar import Body
 
 #: Of the thesis, (4.48) [m/s2].
 GRAVITY_M_S2 = 9.81

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.newton_raphson import accelerations, positions, rates
-from hilplant.mechanics.planar import Floats, Pin
+from hilplant.mechanics.planar import Pin
 from hilplant.mechanics.turn import FOLLOWED
 from hilplant.mechanics.wiper import Wiper, WiperSide
 from hilplant.units import TURN_RAD

@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
-from hilplant.mechanics.planar import Floats, Mechanism
+from hilplant.mechanics.planar import Mechanism
 from hilplant.units import RAD_PER_DEG
 
 TOLERANCE = 1e-12

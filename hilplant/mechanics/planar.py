@@ -11,11 +11,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from hilplant.arrays import Floats
 
 Point = tuple[float, float]
 Pin = tuple[str, Point]
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

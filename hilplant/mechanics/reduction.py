@@ -10,9 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.coefficients import coefficient_over
 from hilplant.mechanics.motion import Motion, forward_sense
-from hilplant.mechanics.planar import Floats, Pin
+from hilplant.mechanics.planar import Pin
 from hilplant.mechanics.wiper import Wiper, WiperSide
 
 

@@ -5,9 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.mechanics.motion import Motion, PointMotion, motion, point_motion
-from hilplant.mechanics.planar import Floats, Pin
+from hilplant.mechanics.planar import Pin
 from hilplant.mechanics.wiper import Wiper
 from hilplant.units import TURN_RAD
 

@@ -4,9 +4,10 @@ from collections import Counter
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.design_points import GeometryError
 from hilplant.mechanics.linkage import Linkage
-from hilplant.mechanics.planar import Floats, Ground, Mechanism, Revolute, Rigid
+from hilplant.mechanics.planar import Ground, Mechanism, Revolute, Rigid
 
 #: A singular value below this share of the largest one counts as none.
 RANK = 1e-9

@@ -6,8 +6,8 @@ the bodies and not from differences.
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.motion import motion
-from hilplant.mechanics.planar import Floats
 from hilplant.mechanics.reduction import Curve, Reduction, reduce
 from hilplant.mechanics.wiper import Wiper
 from hilplant.models.tables import (

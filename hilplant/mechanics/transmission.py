@@ -15,11 +15,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.design_points import GeometryError
 from hilplant.mechanics.dyads import Dyad, taken_apart
 from hilplant.mechanics.linkage import CLOSURE_RAD, Linkage
 from hilplant.mechanics.newton_raphson import SolutionError, follow, follow_as_far
-from hilplant.mechanics.planar import Floats, Mechanism
+from hilplant.mechanics.planar import Mechanism
 from hilplant.units import RAD_PER_DEG, TURN_RAD
 
 #: Smallest transmission angle that is accepted unless another one is asked for.

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.newton_raphson import SolutionError, follow, rates
-from hilplant.mechanics.planar import Floats, Mechanism
+from hilplant.mechanics.planar import Mechanism
 from hilplant.units import TURN_RAD
 
 #: Even steps of the turn.

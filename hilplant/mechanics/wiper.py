@@ -25,12 +25,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.mechanics.carried import SideParts, WiperSide, carried
 from hilplant.mechanics.coefficients import CoefficientError
 from hilplant.mechanics.design_points import GeometryError
 from hilplant.mechanics.linkage import Linkage
 from hilplant.mechanics.masses import gravity_in_plane, linkage_masses, rod_inertias
-from hilplant.mechanics.planar import Body, Floats, Joint, Mechanism
+from hilplant.mechanics.planar import Body, Joint, Mechanism
 from hilplant.mechanics.turn import Turn, followed
 
 __all__ = ["AIR_DENSITY_KG_M3", "SideParts", "Wiper", "WiperParts", "WiperSide", "assemble"]

@@ -26,15 +26,15 @@ from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.declaration import Signal, declared, members
 from hilplant.jit import Written, compiled, written_out
 
 Record = TypeVar("Record", bound=tuple[Any, ...])
 
 
-def pack(record: tuple[Any, ...]) -> NDArray[np.float64]:
+def pack(record: tuple[Any, ...]) -> Floats:
     """Flatten a record, inner ones and arrays in place, into a row of floats."""
     values: list[float] = []
     for field in record:

@@ -12,8 +12,8 @@ import numpy as np
 from scipy.optimize import least_squares
 from uncertainties import UFloat, correlated_values, ufloat
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
-from hilplant.measurements.measurement import Samples
 
 Number: TypeAlias = float | UFloat
 
@@ -75,7 +75,7 @@ def inductance(time_constant_s: Number, resistance_ohm: Number) -> UFloat:
     return quantity(time_constant_s * resistance_ohm)
 
 
-def fall_time(time_s: Samples, current_a: Samples, step_s: float) -> float:
+def fall_time(time_s: Floats, current_a: Floats, step_s: float) -> float:
     """Return the time after `step_s` until the current has fallen to 1/e of its value at the step, read as in 5.4.3.
 
     Raises
@@ -95,7 +95,7 @@ def fall_time(time_s: Samples, current_a: Samples, step_s: float) -> float:
     return float(np.interp(-start / np.e, -current_a[pair], time_s[pair])) - step_s
 
 
-def decay(time_s: Samples, current_a: Samples) -> tuple[UFloat, UFloat, UFloat]:
+def decay(time_s: Floats, current_a: Floats) -> tuple[UFloat, UFloat, UFloat]:
     """Return time constant [s], height [A] and end value [A] of a current that decays, by least squares.
 
     All samples count, not the one where it crosses 36.8 %; the samples must begin at or after the step.
@@ -109,7 +109,7 @@ def decay(time_s: Samples, current_a: Samples) -> tuple[UFloat, UFloat, UFloat]:
     elapsed = time_s - time_s[0]
     span = float(current_a[0] - current_a[-1])
 
-    def residuals(x: Samples) -> Samples:
+    def residuals(x: Floats) -> Floats:
         return np.asarray(x[2] + x[1] * np.exp(-elapsed / np.exp(x[0])) - current_a, np.float64)
 
     fits = [least_squares(residuals, [np.log(elapsed[-1] / part), span, current_a[-1]]) for part in (2, 6, 20, 60)]
@@ -163,7 +163,7 @@ def _with_scatter(torques: Sequence[Number], speeds: Sequence[UFloat], slope: UF
     )
 
 
-def run_down(time_s: Samples, speed_rad_s: Samples, friction: MotorFriction) -> UFloat:
+def run_down(time_s: Floats, speed_rad_s: Floats, friction: MotorFriction) -> UFloat:
     """Return the inertia [kg m2] from a run-down without current: J dw/dt = -b w - T, with b and T known.
 
     The terminals must be open: the speed is then the open voltage over K. Only the ratio of friction to inertia shows
@@ -177,7 +177,7 @@ def run_down(time_s: Samples, speed_rad_s: Samples, friction: MotorFriction) -> 
     """
     elapsed = time_s - time_s[0]
 
-    def speed(x: Samples) -> Samples:
+    def speed(x: Floats) -> Floats:
         b, torque = (quantity(each).nominal_value for each in friction)
         if abs(b) * elapsed[-1] < 1e-9 * x[1]:
             return np.asarray(np.maximum(x[0] - torque * elapsed / x[1], 0.0), np.float64)
@@ -188,7 +188,7 @@ def run_down(time_s: Samples, speed_rad_s: Samples, friction: MotorFriction) -> 
     slope = (speed_rad_s[0] - speed_rad_s[len(elapsed) // 2]) / elapsed[len(elapsed) // 2]
     guess = quantity(friction[0] * speed_rad_s[0] + friction[1]).nominal_value / max(slope, 1e-9)
 
-    def residuals(x: Samples) -> Samples:
+    def residuals(x: Floats) -> Floats:
         return speed(np.array([x[0] * speed_rad_s[0], x[1] * guess])) - speed_rad_s
 
     fit = least_squares(residuals, [1.0, 1.0], bounds=([0.0, 1e-3], [10.0, 1e3]))
@@ -198,6 +198,6 @@ def run_down(time_s: Samples, speed_rad_s: Samples, friction: MotorFriction) -> 
     return quantity(quantity(fit.x[1] * guess, error) * scale)
 
 
-def _covariance(jacobian: Samples, residuals: Samples) -> Samples:
+def _covariance(jacobian: Floats, residuals: Floats) -> Floats:
     freedom = max(1, len(residuals) - jacobian.shape[1])
     return np.asarray(np.linalg.pinv(jacobian.T @ jacobian) * float(residuals @ residuals) / freedom, np.float64)

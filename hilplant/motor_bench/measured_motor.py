@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 from uncertainties import UFloat
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.measurements.csv_table import read_csv
-from hilplant.measurements.measurement import Samples
 from hilplant.motor_bench.bench_measurements import (
     MotorFriction,
     SteadyRun,
@@ -129,7 +129,7 @@ def _friction(runs: Sequence[SteadyRun], constants: Sequence[UFloat], given: Giv
     return MotorFriction(quantity(given.damping_n_m_s), mean_of(dry))
 
 
-def _samples(name: str, beside: Path) -> tuple[Samples, Samples]:
+def _samples(name: str, beside: Path) -> tuple[Floats, Floats]:
     """Return the first two columns of a file, rows with a gap left out."""
     path = beside / name
     if not path.is_file():

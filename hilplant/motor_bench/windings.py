@@ -15,8 +15,8 @@ Left out: saturation, armature reaction, leakage between the magnets' edges, the
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.motor_bench.readings import Windings
 from hilplant.units import RAD_PER_DEG, TURN_RAD
 
@@ -71,7 +71,7 @@ def counted(armature: Armature, fast: bool) -> BrushSum:
     return BrushSum(float(sums.mean()), float(sums.min()), float(sums.max()))
 
 
-def emf_sign(centre_rad: NDArray[np.float64], armature: Armature) -> NDArray[np.float64]:
+def emf_sign(centre_rad: Floats, armature: Armature) -> Floats:
     """Return 1, 0 or -1 for coils with their axis at these angles from the neutral line."""
     half = 0.5 * armature.pitch_slots * TURN_RAD / armature.coils
     # A side is under the north magnet within half a turn of the neutral line.
@@ -79,7 +79,7 @@ def emf_sign(centre_rad: NDArray[np.float64], armature: Armature) -> NDArray[np.
     return np.asarray(0.5 * (ahead - behind))
 
 
-def path_sign(centre_rad: NDArray[np.float64], armature: Armature, fast: bool) -> NDArray[np.float64]:
+def path_sign(centre_rad: Floats, armature: Armature, fast: bool) -> Floats:
     """Return 1 for coils of current path one, -1 for those of path two."""
     begin = armature.fast_brush_deg * RAD_PER_DEG if fast else 0.0
     angle = np.mod(centre_rad, TURN_RAD)

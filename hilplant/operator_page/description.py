@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.channel.run_files import columns
 from hilplant.declaration import Signal
@@ -13,7 +14,7 @@ from hilplant.ecu.chart import CHART
 from hilplant.faults.catalogue import BY_NAME
 from hilplant.faults.fault import FaultDefinition
 from hilplant.mechanics.motion import motion
-from hilplant.mechanics.planar import Floats, Pin, Revolute
+from hilplant.mechanics.planar import Pin, Revolute
 from hilplant.mechanics.wiper import Wiper, WiperSide
 from hilplant.operator_page.scenario_play import known_scenarios
 from hilplant.resources import shipped

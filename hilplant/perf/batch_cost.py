@@ -9,9 +9,10 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.models.row import pack
-from hilplant.perf.c_step import Rows, SimulateRows, compile_batch
+from hilplant.perf.c_step import SimulateRows, compile_batch
 from hilplant.perf.minute import bench_with, mixed_minute
 from hilplant.perf.results import Goal, PartResult, Row
 from hilplant.perf.samples import alternate
@@ -54,7 +55,7 @@ def measure() -> PartResult:
     return PartResult([row], figures, [remark])
 
 
-def shaken_sets(bench: Bench, sets: int) -> Rows:
+def shaken_sets(bench: Bench, sets: int) -> Floats:
     """Return rows of parameters near those of the bench: other motors, other blades."""
     random = np.random.default_rng(7)
     rows = []
@@ -68,11 +69,11 @@ def shaken_sets(bench: Bench, sets: int) -> Rows:
     return np.array(rows)
 
 
-def _ours(states: Rows, inputs: Rows, parameters: Rows, tables: Rows, outputs: Rows) -> None:
+def _ours(states: Floats, inputs: Floats, parameters: Floats, tables: Floats, outputs: Floats) -> None:
     simulate_batch(states, inputs, parameters, tables, _COLUMNS, outputs)
 
 
-def _job(way: SimulateRows, bench: Bench, inputs: Rows, parameters: Rows, outputs: Rows) -> Callable[[], float]:
+def _job(way: SimulateRows, bench: Bench, inputs: Floats, parameters: Floats, outputs: Floats) -> Callable[[], float]:
     def job() -> float:
         states = np.tile(bench.state_row, (len(parameters), 1))
         begin = time.perf_counter()

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.c_source import compiler as c_compiler
 from hilplant.c_source.c_types import BOOLEAN, Array, Type
 from hilplant.c_source.compiler import FLAGS, compile_library
@@ -18,15 +18,14 @@ from hilplant.models.batch import simulate_columns
 from hilplant.models.torque_samples import network_tangents
 from hilplant.perf.results import NotMeasurable
 
-__all__ = ["FLAGS", "Rows", "SimulateRows", "Tangents", "compile_batch", "compile_network", "compile_step", "compiler"]
+__all__ = ["FLAGS", "SimulateRows", "Tangents", "compile_batch", "compile_network", "compile_step", "compiler"]
 
 WITH_OPENMP = "-fopenmp"
 
-Rows = NDArray[np.float64]
 #: State, inputs [ticks, inputs], parameters, tables, outputs [ticks, outputs].
-SimulateRows = Callable[[Rows, Rows, Rows, Rows, Rows], None]
+SimulateRows = Callable[[Floats, Floats, Floats, Floats, Floats], None]
 #: Numbers of the networks, whether the screen is wet, states [n, 2], torques and derivatives [n, 3].
-Tangents = Callable[[Rows, bool, Rows, Rows], None]
+Tangents = Callable[[Floats, bool, Floats, Floats], None]
 
 #: What is measured besides the step, and the arrays that it takes.
 _MORE: dict[Any, tuple[Type, ...]] = {
@@ -49,7 +48,7 @@ class CompiledPlant(ctypes.Structure):
     )
 
     @classmethod
-    def of(cls, parameters: Rows, tables: Rows) -> "CompiledPlant":
+    def of(cls, parameters: Floats, tables: Floats) -> "CompiledPlant":
         """Return the plant of packed parameters and tables, which must live as long as it does."""
         return cls(_at(parameters), len(parameters), _at(tables), *tables.shape[:2])
 
@@ -66,7 +65,7 @@ def compile_step(folder: Path, *more_flags: str) -> SimulateRows:
     """Compile the step into `folder` and return its loop, which takes the same arrays as `simulate_rows`."""
     function = _library(folder, more_flags).hilplant_simulate
 
-    def simulate(state: Rows, inputs: Rows, parameters: Rows, tables: Rows, outputs: Rows) -> None:
+    def simulate(state: Floats, inputs: Floats, parameters: Floats, tables: Floats, outputs: Floats) -> None:
         plant = CompiledPlant.of(parameters, tables)
         function(ctypes.byref(plant), _at(state), ctypes.c_int64(len(inputs)), _at(inputs), _at(outputs))
 
@@ -82,7 +81,7 @@ def compile_batch(folder: Path, columns: Sequence[int], *more_flags: str) -> Sim
     function = _library(folder, (WITH_OPENMP, *more_flags)).simulate_batch
     indices = (ctypes.c_int64 * len(columns))(*columns)
 
-    def simulate(states: Rows, inputs: Rows, parameters: Rows, tables: Rows, outputs: Rows) -> None:
+    def simulate(states: Floats, inputs: Floats, parameters: Floats, tables: Floats, outputs: Floats) -> None:
         plants = (CompiledPlant * len(parameters))(*(CompiledPlant.of(row, tables) for row in parameters))
         sets, ticks, count = (ctypes.c_int64(each) for each in (len(parameters), len(inputs), len(columns)))
         function(plants, sets, _at(states), ticks, _at(inputs), count, indices, _at(outputs))
@@ -94,7 +93,7 @@ def compile_network(folder: Path, *more_flags: str) -> Tangents:
     """Compile the torque network into `folder`; the function takes the same arrays as `network_tangents`."""
     function = _library(folder, more_flags).torque_tangents
 
-    def tangents(numbers: Rows, wet: bool, states: Rows, into: Rows) -> None:
+    def tangents(numbers: Floats, wet: bool, states: Floats, into: Floats) -> None:
         length, count = ctypes.c_int64(len(numbers)), ctypes.c_int64(len(states))
         function(_at(numbers), length, ctypes.c_int(wet), _at(states), count, _at(into))
 
@@ -113,7 +112,7 @@ def _library(folder: Path, more_flags: tuple[str, ...]) -> ctypes.CDLL:
         raise NotMeasurable(str(error)) from error
 
 
-def _at(array: Rows) -> ctypes.c_void_p:
+def _at(array: Floats) -> ctypes.c_void_p:
     if array.dtype != np.float64 or not array.flags.c_contiguous:
         raise ValueError("the step in C takes contiguous arrays of 64-bit floats")
     return ctypes.c_void_p(array.ctypes.data)

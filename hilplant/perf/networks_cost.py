@@ -7,10 +7,11 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench, load_bench
 from hilplant.models.narx import NETWORK
 from hilplant.models.plant import simulate_rows
-from hilplant.perf.c_step import Rows, SimulateRows, compile_step
+from hilplant.perf.c_step import SimulateRows, compile_step
 from hilplant.perf.minute import mixed_minute
 from hilplant.perf.results import Goal, NotMeasurable, PartResult, Row
 from hilplant.perf.samples import alternate
@@ -22,7 +23,7 @@ _RATIO_GOAL = 1.2
 _ROUNDS = 30
 
 
-def calm_minute(bench: Bench) -> Rows:
+def calm_minute(bench: Bench) -> Floats:
     """Return the inputs of the mixed minute without wind, on a screen that is dry or wet, as networks know it."""
     rows = mixed_minute().input_rows(bench.input_row, bench.step_ns)
     rows[:, INPUT_INDEX["vehicle_speed_m_s"]] = 0.0
@@ -47,7 +48,7 @@ def _measure_bench(name: str, in_c: SimulateRows, measured: PartResult) -> None:
     inputs = calm_minute(bench)
     ours, theirs = np.empty((2, len(inputs), len(OUTPUTS)))
 
-    def timed_s(way: SimulateRows, outputs: Rows) -> float:
+    def timed_s(way: SimulateRows, outputs: Floats) -> float:
         state, begin = bench.state_row.copy(), time.perf_counter()
         way(state, inputs, bench.parameter_row, bench.tables, outputs)
         return time.perf_counter() - begin

@@ -8,9 +8,10 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.models.plant import simulate_rows
-from hilplant.perf.c_step import FLAGS, Rows, SimulateRows, compile_step, compiler
+from hilplant.perf.c_step import FLAGS, SimulateRows, compile_step, compiler
 from hilplant.perf.minute import RATIO_GOALS, bench_with, mixed_minute
 from hilplant.perf.results import Goal, NotMeasurable, PartResult, Row
 from hilplant.perf.samples import alternate
@@ -65,7 +66,7 @@ def _of_the_default_bench(figures: dict[str, float | str]) -> dict[str, float | 
     }
 
 
-def timed_s(way: SimulateRows, bench: Bench, inputs: Rows, outputs: Rows) -> float:
+def timed_s(way: SimulateRows, bench: Bench, inputs: Floats, outputs: Floats) -> float:
     """Return how long one run over all rows of inputs takes [s]."""
     state = bench.state_row.copy()
     begin = time.perf_counter()
@@ -73,7 +74,7 @@ def timed_s(way: SimulateRows, bench: Bench, inputs: Rows, outputs: Rows) -> flo
     return time.perf_counter() - begin
 
 
-def _differences(bench: Bench, inputs: Rows, ways: list[SimulateRows]) -> float:
+def _differences(bench: Bench, inputs: Floats, ways: list[SimulateRows]) -> float:
     """Check that all ways compute the same, and compile what is not yet; return the worst difference."""
     results = [np.empty((len(inputs), len(OUTPUTS))) for _ in ways]
     for way, outputs in zip(ways, results, strict=True):
@@ -81,7 +82,7 @@ def _differences(bench: Bench, inputs: Rows, ways: list[SimulateRows]) -> float:
     return worst_difference(results)
 
 
-def worst_difference(results: list[Rows]) -> float:
+def worst_difference(results: list[Floats]) -> float:
     """Return by how much of their size outputs [..., outputs] are apart at most; refuse more than rounding.
 
     Raises

@@ -7,9 +7,10 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench import load_bench
 from hilplant.models.torque_samples import network_tangents
-from hilplant.perf.c_step import Rows, Tangents, compile_network
+from hilplant.perf.c_step import Tangents, compile_network
 from hilplant.perf.results import Goal, PartResult, Row
 from hilplant.perf.samples import alternate
 from hilplant.units import SECOND_NS, TURN_RAD
@@ -39,7 +40,7 @@ def measure() -> PartResult:
     return PartResult(rows, figures)
 
 
-def _timed_s(way: Tangents, numbers: Rows, states: Rows, into: Rows) -> float:
+def _timed_s(way: Tangents, numbers: Floats, states: Floats, into: Floats) -> float:
     begin = time.perf_counter()
     way(numbers, False, states, into)
     return time.perf_counter() - begin

@@ -4,8 +4,8 @@ from os import PathLike
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import AnyArray, Floats
 from hilplant.plots.picture import figure_with, save
 from hilplant.simulation.run import Result, simulate
 from hilplant.units import TURN_RAD
@@ -49,7 +49,7 @@ def plot_park_sequences(out_png: str | PathLike[str]) -> None:
     save(figure, out_png, 110)
 
 
-def _draw_circuit(column: NDArray[Any], result: Result, title: str) -> None:
+def _draw_circuit(column: AnyArray, result: Result, title: str) -> None:
     terminals, current, speed, angle, stop = column
     for axes in column:
         axes.grid(alpha=0.25)
@@ -89,11 +89,11 @@ def _terminals(axes: Any, result: Result) -> None:
     axes.yaxis.grid(False)
 
 
-def _turns(result: Result) -> NDArray[np.float64]:
+def _turns(result: Result) -> Floats:
     return result["crank_speed_rad_s"] * 60.0 / TURN_RAD
 
 
-def _without_jumps(result: Result) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _without_jumps(result: Result) -> tuple[Floats, Floats]:
     """Return times and crank angles from park [deg], with a gap where the angle begins a new turn."""
     angle = (np.degrees(result["crank_angle_rad"]) + 180.0) % 360.0 - 180.0
     angle[1:][np.abs(np.diff(angle)) > 180.0] = np.nan

@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.mechanics.motion import Motion, motion
-from hilplant.mechanics.planar import Floats, Revolute
+from hilplant.mechanics.planar import Revolute
 from hilplant.mechanics.wiper import Wiper, WiperSide
 from hilplant.plots.picture import figure_with, save
 from hilplant.units import RAD_PER_DEG, TURN_RAD

@@ -4,15 +4,15 @@ from os import PathLike
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.plots.picture import figure_with, save
 from hilplant.recording.export import signal_columns
 from hilplant.recording.reader import read_recording
 from hilplant.units import SECOND_NS
 
-Columns = dict[str, NDArray[np.float64]]
+Columns = dict[str, Floats]
 
 _MOST_POINTS = 100_000
 _BLUE, _ORANGE, _GREEN, _RED, _GREY = "#0b5cad", "#d9730d", "#2a7f3e", "#b3261e", "#6b7280"

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.declaration import Signal, declared, members
 from hilplant.failure import Failure
 from hilplant.models.records import PARAMETER_INDEX, Parameters, State
@@ -47,7 +47,7 @@ def _elements_of(record: Any) -> dict[str, float | None]:
     return {signal.name: None if signal.name in bare else signal.default for signal in declared(record)}
 
 
-def adopted_row(row: NDArray[np.float64], recorded: Elements, record: type[Any]) -> NDArray[np.float64]:
+def adopted_row(row: Floats, recorded: Elements, record: type[Any]) -> Floats:
     """Return a packed row in the order of today's `record`; what stands behind the elements stays there.
 
     Raises

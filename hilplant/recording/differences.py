@@ -6,24 +6,25 @@ NaN too.
 """
 
 import numpy as np
-from numpy.typing import NDArray
+
+from hilplant.arrays import Floats, Whole
 
 ORDER = 4
 
 
-def encode(values: NDArray[np.float64]) -> NDArray[np.int64]:
+def encode(values: Floats) -> Whole:
     """Return the differences along the first axis, as whole numbers from 0 on where they are small: 0, -1, 1, -2 ..."""
     differences = np.ascontiguousarray(values).view(np.int64).copy()
     for _ in range(ORDER):
         differences[1:] -= differences[:-1].copy()
-    zigzag: NDArray[np.int64] = (differences << 1) ^ (differences >> 63)
+    zigzag: Whole = (differences << 1) ^ (differences >> 63)
     return zigzag
 
 
-def decode(stored: NDArray[np.int64]) -> NDArray[np.float64]:
+def decode(stored: Whole) -> Floats:
     """Return the numbers that :func:`encode` was given."""
     bits = ((stored >> 1) & np.int64(2**63 - 1)) ^ -(stored & 1)
     for _ in range(ORDER):
         bits = np.cumsum(bits, axis=0, dtype=np.int64)
-    values: NDArray[np.float64] = bits.view(np.float64)
+    values: Floats = bits.view(np.float64)
     return values

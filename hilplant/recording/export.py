@@ -4,11 +4,10 @@ from collections.abc import Iterator, Mapping
 from os import PathLike
 from pathlib import Path
 
-import numpy as np
 import pyarrow as pa
-from numpy.typing import NDArray
 
-from hilplant.atomic_write import whole_file
+from hilplant.arrays import Floats
+from hilplant.atomic_write import cannot_be_written, claim, whole_file
 from hilplant.declaration import Signal
 from hilplant.failure import Failure
 from hilplant.recording import frame_logs
@@ -16,7 +15,7 @@ from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, STATUS_COLU
 from hilplant.recording.mf4_frames import FrameGroups
 from hilplant.recording.reader import Recording, read_recording
 from hilplant.recording.span import EVERYTHING, Span
-from hilplant.recording.tables import TableError, check_ending, mf4_group, open_table
+from hilplant.recording.tables import check_ending, mf4_group, open_table
 from hilplant.signals import INPUTS, OUTPUTS, STATUS
 from hilplant.units import SECOND_NS
 
@@ -34,7 +33,7 @@ UNITS = (
 #: Rows that are held at once: half a minute, some 15 MB.
 _ROWS_AT_ONCE = 30_000
 
-Columns = dict[str, NDArray[np.float64]]
+Columns = dict[str, Floats]
 
 
 def export(path: str | PathLike[str], out: str | PathLike[str], span: Span = EVERYTHING) -> str:
@@ -53,18 +52,15 @@ def export(path: str | PathLike[str], out: str | PathLike[str], span: Span = EVE
     if ending not in TABLE_ENDINGS + frame_logs.ENDINGS:
         known = ", ".join(TABLE_ENDINGS + frame_logs.ENDINGS)
         raise Failure(f"{out}: the ending must be one of {known}")
-    if not out.parent.is_dir():
-        raise Failure(f"{out}: cannot be written: there is no folder {out.parent}")
+    claim(out)
     try:
         if ending in TABLE_ENDINGS:
             check_ending(out)
         recording = read_recording(path).within(span)
         with whole_file(out) as passing:
             written = _write(recording, passing, ending)
-    except TableError as error:
-        raise Failure(str(error)) from error
     except OSError as error:
-        raise Failure(f"{out}: cannot be written: {error.strerror or error}") from error
+        raise cannot_be_written(out, error) from error
     absent = [f"the recording has no {', '.join(recording.missing)}"] if recording.missing else []
     return "; ".join([f"{out}: {written}", *absent, *recording.notes])
 

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats, Records
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.recording.differences import decode, encode
 from hilplant.runtime.commands import COMMAND_DTYPE, KINDS, OUTCOMES, OWNERS, PARAMETER
@@ -78,7 +78,7 @@ def schema(metadata: dict[str, str] | None = None, stored: bool = False) -> pa.S
     return pa.schema(fields, {KEY_PREFIX + key: value for key, value in (metadata or {}).items()})
 
 
-def batch(rows: NDArray[np.float64], frames: NDArray[np.void], events: NDArray[np.void] = _NO_EVENTS) -> pa.RecordBatch:
+def batch(rows: Floats, frames: Records, events: Records = _NO_EVENTS) -> pa.RecordBatch:
     """Join rows, frames and events of the ring by their tick, as they are stored; each is in the order of its ticks."""
     row_ticks = rows[:, 0].astype(np.int64)
     ticks = np.union1d(np.union1d(row_ticks, frames["tick"]), events["tick"])
@@ -111,17 +111,17 @@ def numbers(stored: pa.Array, kind: pa.DataType) -> pa.Array:
     return pa.array(values, mask=~there, from_pandas=False)
 
 
-def state_text(state: NDArray[np.float64]) -> bytes:
+def state_text(state: Floats) -> bytes:
     """Return a packed state as text: base64 of little-endian float64."""
     return base64.b64encode(np.ascontiguousarray(state, "<f8").tobytes())
 
 
-def state_of(text: bytes) -> NDArray[np.float64]:
+def state_of(text: bytes) -> Floats:
     """Return the packed state of a text."""
     return np.frombuffer(base64.b64decode(text), "<f8").astype(np.float64)
 
 
-def _frame_structs(frames: NDArray[np.void]) -> pa.StructArray:
+def _frame_structs(frames: Records) -> pa.StructArray:
     lengths = frames["length"]
     within = np.arange(frames["data"].shape[1]) < lengths[:, np.newaxis]
     ends = np.concatenate([[0], np.cumsum(lengths, dtype=np.int32)]).astype(np.int32)
@@ -132,7 +132,7 @@ def _frame_structs(frames: NDArray[np.void]) -> pa.StructArray:
     return pa.StructArray.from_arrays(arrays, fields=list(FRAME_TYPE))
 
 
-def _event_structs(events: NDArray[np.void]) -> pa.StructArray:
+def _event_structs(events: Records) -> pa.StructArray:
     texts = {"kind": [KINDS[kind] for kind in events["kind"]], "owner": [OWNERS[owner] for owner in events["owner"]]}
     texts["outcome"] = [OUTCOMES[outcome] for outcome in events["outcome"]]
     texts["name"] = [element_name(int(e["kind"]), int(e["element"])) for e in events]

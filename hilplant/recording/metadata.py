@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hilplant import __version__
+from hilplant.arrays import Floats
 from hilplant.recording.adoption import FORMAT_1, ROWS, Elements, adopted_row, elements_of
 from hilplant.recording.format import FORMAT_VERSION
 from hilplant.recording.recorded_bench import RecordedBench
@@ -29,9 +29,9 @@ class RunDescription:
 
     name: str
     step_ns: int
-    parameter_row: NDArray[np.float64]
-    tables: NDArray[np.float64]
-    state_row: NDArray[np.float64]
+    parameter_row: Floats
+    tables: Floats
+    state_row: Floats
     sources: dict[str, str]
     start_utc: datetime  # when the recorder was ready; the first tick follows within the loop's start-up
     build: dict[str, str]  # versions of everything that the outputs' bits depend on
@@ -81,8 +81,8 @@ class Begin(NamedTuple):
 
     tick: int
     due_ns: int
-    state_row: NDArray[np.float64]
-    parameter_row: NDArray[np.float64]
+    state_row: Floats
+    parameter_row: Floats
 
 
 def part_description(metadata: dict[str, str], part: int, begin: Begin) -> dict[str, str]:
@@ -94,7 +94,7 @@ def part_description(metadata: dict[str, str], part: int, begin: Begin) -> dict[
     return texts | {"crc32": _checksum(texts)}
 
 
-def parameters_of(metadata: dict[str, str]) -> NDArray[np.float64]:
+def parameters_of(metadata: dict[str, str]) -> Floats:
     """Return the packed parameters of a description."""
     return _decode(metadata["parameter_row"]).copy()
 
@@ -141,13 +141,13 @@ def _checksum(texts: dict[str, str]) -> str:
     return f"{zlib.crc32(json.dumps(texts, sort_keys=True).encode()):08x}"
 
 
-def _encode(values: NDArray[np.float64]) -> str:
+def _encode(values: Floats) -> str:
     """Shape and little-endian float64 bytes, as text."""
     exact = np.ascontiguousarray(values, dtype="<f8")
     return json.dumps({"shape": exact.shape, "float64": base64.b64encode(exact.tobytes()).decode()})
 
 
-def _decode(text: str) -> NDArray[np.float64]:
+def _decode(text: str) -> Floats:
     stored = json.loads(text)
     values = np.frombuffer(base64.b64decode(stored["float64"]), dtype="<f8")
     return values.reshape(stored["shape"]).astype(np.float64)

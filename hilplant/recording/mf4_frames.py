@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
-from numpy.typing import NDArray
 
+from hilplant.arrays import Records
 from hilplant.units import SECOND_NS
 
 #: Name of the event by what kind of frame it is.
@@ -56,7 +56,7 @@ class FrameGroups:
         self._groups[kind] = self._file.append(signal, acq_name="CAN", acq_source=bus, common_timebase=True)
 
 
-def _samples(frames: list[dict[str, Any]], event: str) -> NDArray[np.void]:
+def _samples(frames: list[dict[str, Any]], event: str) -> Records:
     samples = np.zeros(len(frames), [(f"{event}.{name}", kind) for name, kind in _FIELDS])
     for number, frame in enumerate(frames):
         data = frame["data"]

@@ -8,8 +8,8 @@ from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 import pyarrow as pa
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.recording.adoption import (
     ROWS,
@@ -40,7 +40,7 @@ class Block(NamedTuple):
     """Some rows in the order of their ticks, and the plant's state before the first whole one; None without one."""
 
     rows: pa.RecordBatch
-    state_row: NDArray[np.float64] | None
+    state_row: Floats | None
 
 
 @dataclass
@@ -137,7 +137,7 @@ class _PartReader:
         except (ForeignElement, ValueError) as error:
             raise Failure(f"{self._path}: block {number}: {error}") from error
 
-    def _state(self, text: bytes) -> NDArray[np.float64] | None:
+    def _state(self, text: bytes) -> Floats | None:
         return adopted_row(state_of(text), self._elements["state_row"], ROWS["state_row"]) if text else None
 
     def _note_end(self) -> None:

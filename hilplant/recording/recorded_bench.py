@@ -3,8 +3,7 @@
 from collections.abc import Mapping
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
+from hilplant.arrays import Floats
 
 
 class RecordedBench(Protocol):
@@ -19,15 +18,15 @@ class RecordedBench(Protocol):
         """Length of a tick."""
 
     @property
-    def parameter_row(self) -> NDArray[np.float64]:
+    def parameter_row(self) -> Floats:
         """Packed parameters."""
 
     @property
-    def tables(self) -> NDArray[np.float64]:
+    def tables(self) -> Floats:
         """Tables over the crank angle."""
 
     @property
-    def state_row(self) -> NDArray[np.float64]:
+    def state_row(self) -> Floats:
         """Packed state before the first tick."""
 
     @property

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from os import PathLike
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats, Whole
 from hilplant.models.plant import simulate_rows
 from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, parameter_changes
 from hilplant.recording.metadata import current_build
@@ -98,14 +98,14 @@ class _Comparison:
         for _, index, value in changes:
             self._parameters[index] = value
 
-    def _count_gaps(self, ticks: NDArray[np.int64]) -> int:
+    def _count_gaps(self, ticks: Whole) -> int:
         """Note the ticks that are missing in a block, and return how many rows come before the first of them."""
         broken = np.flatnonzero(np.diff(ticks) != 1)
         self.missing += [(int(ticks[at]) + 1, int(ticks[at + 1]) - 1) for at in broken]
         self._next = int(ticks[-1]) + 1
         return int(broken[0]) + 1 if len(broken) else len(ticks)
 
-    def _compare(self, ticks: NDArray[np.int64], recorded: NDArray[np.float64], replayed: NDArray[np.float64]) -> None:
+    def _compare(self, ticks: Whole, recorded: Floats, replayed: Floats) -> None:
         different = recorded.view(np.uint64) != replayed.view(np.uint64)  # so that NaN and -0 count as they are
         different &= self.outputs
         if not different.any():

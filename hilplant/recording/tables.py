@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import to_json
 
-from hilplant.atomic_write import whole_file
+from hilplant.arrays import Floats
+from hilplant.atomic_write import cannot_be_written, whole_file
 from hilplant.extras import need
 from hilplant.failure import Failure
 from hilplant.recording.mcap_table import mcap_table
@@ -17,7 +17,7 @@ from hilplant.recording.mcap_table import mcap_table
 #: Rows that are turned into text at once.
 _CHUNK = 4096
 
-Columns = Mapping[str, NDArray[np.float64]]
+Columns = Mapping[str, Floats]
 #: Takes more rows of a table: columns of equal length, the same each time.
 Add = Callable[[Columns], None]
 
@@ -35,7 +35,9 @@ def write_table(path: str | Path, columns: Columns, units: Mapping[str, str]) ->
     Raises
     ------
     TableError
-        When the ending is not known, its library is not installed, or the file cannot be written.
+        When the ending is not known.
+    Failure
+        When its library is not installed, or the file cannot be written.
 
     """
     check_ending(path)
@@ -43,7 +45,7 @@ def write_table(path: str | Path, columns: Columns, units: Mapping[str, str]) ->
         with whole_file(Path(path)) as passing, open_table(passing, units) as add:
             add(columns)
     except OSError as error:
-        raise TableError(f"{path}: cannot be written: {error.strerror or error}") from error
+        raise cannot_be_written(Path(path), error) from error
 
 
 def open_table(path: Path, units: Mapping[str, str]) -> AbstractContextManager[Add]:

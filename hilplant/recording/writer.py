@@ -4,8 +4,8 @@ from collections import deque
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats, Records
 from hilplant.models.records import STATE_INDEX
 from hilplant.recording.format import CHECKSUM_KEY, LOST_KEY, SIGNAL_COLUMNS, STATE_KEY, batch, checksum, state_text
 from hilplant.recording.metadata import Begin, parameters_of, part_description
@@ -18,9 +18,6 @@ from hilplant.runtime.ring import Ring
 _STATE = slice(2 + len(SIGNAL_COLUMNS), 2 + len(SIGNAL_COLUMNS) + len(STATE_INDEX))
 _NEVER_NS = 1 << 62
 
-Rows = NDArray[np.float64]
-Frames = NDArray[np.void]
-Events = NDArray[np.void]
 _NO_EVENTS = np.empty(0, COMMAND_DTYPE)
 
 
@@ -28,7 +25,7 @@ class EventsLost(OSError):
     """Commands were overwritten before they were recorded: replay could not repeat the run."""
 
 
-def change_parameters(parameter_row: Rows, events: Events) -> None:
+def change_parameters(parameter_row: Floats, events: Records) -> None:
     """Change a parameter row as these events have changed the loop's."""
     changes = events[(events["kind"] == PARAMETER) & (events["outcome"] == APPLIED)]
     for change in changes:
@@ -84,7 +81,7 @@ class RecordingWriter:
             raise EventsLost(0, f"{lost} commands were overwritten before they were recorded")
         self.add(rows, frames, events[events["tick"] >= self._first_tick])
 
-    def add(self, rows: Rows, frames: Frames, events: Events = _NO_EVENTS) -> None:
+    def add(self, rows: Floats, frames: Records, events: Records = _NO_EVENTS) -> None:
         """Take rows, and frames and events of these rows and later ones."""
         self._rows.append(rows)
         self._frames.append(frames)
@@ -138,7 +135,7 @@ class RecordingWriter:
             self._first_ns = None  # the next block begins a part
         return int(next_ns if self._first_ns is None else self._first_ns) + length_ns
 
-    def _write_block(self, rows: Rows, frames: Frames, events: Events) -> None:
+    def _write_block(self, rows: Floats, frames: Records, events: Records) -> None:
         begins = len(rows) > 0 and self._first_ns is None
         if begins and self._part.blocks:
             self._next_part(rows)
@@ -156,7 +153,7 @@ class RecordingWriter:
         if begins:
             self._first_ns = int(rows[0, 1])
 
-    def _next_part(self, rows: Rows) -> None:
+    def _next_part(self, rows: Floats) -> None:
         """Close the part and open the next, which begins with these rows."""
         self.close()
         self._number += 1
@@ -172,7 +169,7 @@ class RecordingWriter:
         return part
 
 
-def _parted(records: tuple[Frames, Events], tick: float) -> tuple[tuple[Frames, Events], tuple[Frames, Events]]:
+def _parted(records: tuple[Records, Records], tick: float) -> tuple[tuple[Records, Records], tuple[Records, Records]]:
     """Return what is of ticks before `tick`, and the rest."""
     (frames, events), at = records, [int(np.searchsorted(each["tick"], tick)) for each in records]
     return (frames[: at[0]], events[: at[1]]), (frames[at[0] :], events[at[1] :])

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.runtime.lane import Taken
 from hilplant.runtime.ring import Ring
 
@@ -47,7 +48,7 @@ class Follower:
         self._event_place = taken.place
         return taken
 
-    def latest(self) -> NDArray[np.float64]:
+    def latest(self) -> Floats:
         """Copy the newest row; zeros before the first."""
         return self._ring.latest()
 

@@ -4,9 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from hilplant.arrays import Floats
 from hilplant.bus.faulty_transport import FaultyTransport
 from hilplant.failure import Failure
 from hilplant.faults.acting import ActingFaults
@@ -44,7 +42,7 @@ class HeldFaults:
     def __init__(
         self,
         acting: ActingFaults,
-        rows: tuple[NDArray[np.float64], NDArray[np.float64]],
+        rows: tuple[Floats, Floats],
         counts: list[int],
         tell: Callable[[ChannelCommand], None],
     ) -> None:

@@ -3,13 +3,14 @@
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+
+from hilplant.arrays import AnyArray
 
 
 class Taken(NamedTuple):
     """What is new, the place behind it, and how much was overwritten before it was read."""
 
-    records: NDArray[Any]
+    records: AnyArray
     place: int
     lost: int
 
@@ -21,7 +22,7 @@ class Lane:
     overwritten meanwhile is not given but counted.
     """
 
-    def __init__(self, words: memoryview, head_at: int, records: NDArray[Any]) -> None:
+    def __init__(self, words: memoryview, head_at: int, records: AnyArray) -> None:
         """Find the lane whose head is the word `head_at`."""
         self._words, self._head_at, self._records = words, head_at, records
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.bus.node import Node
 from hilplant.faults.acting import ActingFaults
 from hilplant.models.plant import tick as plant_tick
@@ -39,7 +39,7 @@ _DEGRADED_FOR_NS = SECOND_NS
 
 #: A controller inside the loop: called with time [ns], state row and input row, it writes its command to the last, and
 #: says whether it is sound. One that is not is not called again: the safe state is in force from then on.
-Control = Callable[[int, NDArray[np.float64], NDArray[np.float64]], bool]
+Control = Callable[[int, Floats, Floats], bool]
 
 
 class PlantRows(Protocol):
@@ -50,19 +50,19 @@ class PlantRows(Protocol):
         """Length of a tick."""
 
     @property
-    def parameter_row(self) -> NDArray[np.float64]:
+    def parameter_row(self) -> Floats:
         """Packed parameters."""
 
     @property
-    def tables(self) -> NDArray[np.float64]:
+    def tables(self) -> Floats:
         """Tables over the crank angle."""
 
     @property
-    def state_row(self) -> NDArray[np.float64]:
+    def state_row(self) -> Floats:
         """Packed initial state."""
 
     @property
-    def input_row(self) -> NDArray[np.float64]:
+    def input_row(self) -> Floats:
         """Inputs until something else is said."""
 
     @property

@@ -3,9 +3,7 @@
 from collections.abc import MutableSequence
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from hilplant.arrays import Floats
 from hilplant.runtime import commands as c
 
 _NEVER_NS = 1 << 62
@@ -28,7 +26,7 @@ class Ownership:
     there is another one.
     """
 
-    def __init__(self, bus: MutableSequence[float], row: NDArray[np.float64]) -> None:
+    def __init__(self, bus: MutableSequence[float], row: Floats) -> None:
         self._bus, self._row = bus, row
         self._set: dict[int, float] = {}
         self._held: tuple[dict[int, _Held], ...] = ({}, {}, {})  # by owner; the bus holds nothing
@@ -95,7 +93,7 @@ class Ownership:
         self.next_end_ns = min(ends, default=_NEVER_NS)
         return gone
 
-    def impose(self, inputs: NDArray[np.float64]) -> None:
+    def impose(self, inputs: Floats) -> None:
         """Write the values that stand over those of the bus, and say who commands what."""
         self._row[:] = c.BUS
         for index, value in list(self._set.items()):

@@ -14,6 +14,7 @@ the interpreter apart, more than a store buffer holds: sound in practice, not by
 import numpy as np
 from numpy.typing import NDArray
 
+from hilplant.arrays import Floats, Records
 from hilplant.bus.frame import Frame
 from hilplant.runtime.commands import COMMAND_DTYPE
 from hilplant.runtime.frame_slot import FRAME, FRAME_BYTES, FRAME_DTYPE
@@ -49,7 +50,7 @@ class Ring:
         self._shared, self._memory, self._words = shared, shared.bytes, words
         self._row_count, self._frame_count = words[_ROWS], words[_FRAMES]
         shape = (self._row_count, words[_WIDTH])
-        self._rows: NDArray[np.float64] = np.ndarray(shape, np.float64, shared.bytes, _HEADER_BYTES)
+        self._rows: Floats = np.ndarray(shape, np.float64, shared.bytes, _HEADER_BYTES)
         self._frames_at = _HEADER_BYTES + self._rows.nbytes
         self._frames = np.ndarray((self._frame_count,), FRAME_DTYPE, shared.bytes, self._frames_at)
         events_at = self._frames_at + self._frames.nbytes
@@ -62,7 +63,7 @@ class Ring:
         self.mailbox = Mailbox(words, _COMMAND_TAIL, Lane(words, _COMMAND_HEAD, commands))
         late_at = events_at + events.nbytes + commands.nbytes
         self._late: NDArray[np.int32] = np.ndarray((self._row_count,), np.int32, shared.bytes, late_at)
-        self._scratch: NDArray[np.float64] = np.zeros(words[_WIDTH])
+        self._scratch: Floats = np.zeros(words[_WIDTH])
         self._full = False
         self._row_head, self._frame_head, self._lost = words[_ROW_HEAD], words[_FRAME_HEAD], words[_LOST]
 
@@ -127,11 +128,11 @@ class Ring:
         """Tell how late [us] the tick begins whose row is written next."""
         self._late[self._row_head % self._row_count] = min(late_us, _LATEST_US)
 
-    def next_row(self) -> NDArray[np.float64]:
+    def next_row(self) -> Floats:
         """Return the slot to fill in place; a scratch row that leads nowhere while the ring is full."""
         head, words = self._row_head, self._words
         self._full = head - words[_ROW_TAIL] >= self._row_count and words[_READER] != 0
-        row: NDArray[np.float64] = self._scratch if self._full else self._rows[head % self._row_count]
+        row: Floats = self._scratch if self._full else self._rows[head % self._row_count]
         return row
 
     def commit(self) -> None:
@@ -170,19 +171,19 @@ class Ring:
 
     # The reader's side
 
-    def read_rows(self) -> NDArray[np.float64]:
+    def read_rows(self) -> Floats:
         """Take the rows written since the last call; from the first on the ring keeps what is not read."""
         self._begin()
         head, tail = self._words[_ROW_HEAD], self._words[_ROW_TAIL]
-        taken: NDArray[np.float64] = self._rows[np.arange(tail, head) % self._row_count]
+        taken: Floats = self._rows[np.arange(tail, head) % self._row_count]
         self._words[_ROW_TAIL] = head
         return taken
 
-    def read_frames(self) -> NDArray[np.void]:
+    def read_frames(self) -> Records:
         """Take the frames written since the last call, as an array of ``FRAME_DTYPE``."""
         self._begin()
         head, tail = self._words[_FRAME_HEAD], self._words[_FRAME_TAIL]
-        taken: NDArray[np.void] = self._frames[np.arange(tail, head) % self._frame_count]
+        taken: Records = self._frames[np.arange(tail, head) % self._frame_count]
         self._words[_FRAME_TAIL] = head
         return taken
 
@@ -192,9 +193,9 @@ class Ring:
         words[_ROW_TAIL], words[_FRAME_TAIL] = words[_ROW_HEAD], words[_FRAME_HEAD]
         words[_READER] = 1
 
-    def next_unread(self) -> NDArray[np.float64]:
+    def next_unread(self) -> Floats:
         """Copy the row that :meth:`read_rows` will give first; it must be there."""
-        row: NDArray[np.float64] = self._rows[self._words[_ROW_TAIL] % self._row_count].copy()
+        row: Floats = self._rows[self._words[_ROW_TAIL] % self._row_count].copy()
         return row
 
     @property
@@ -223,11 +224,11 @@ class Ring:
                 words[tail] = words[head] - count + count // 8 + 1
         words[_READER] = 1
 
-    def latest(self) -> NDArray[np.float64]:
+    def latest(self) -> Floats:
         """Copy the newest row without taking it, as any number of processes may; zeros before the first."""
         while True:
             head = self._words[_ROW_HEAD]
-            row: NDArray[np.float64] = self._rows[(head - 1) % self._row_count].copy()
+            row: Floats = self._rows[(head - 1) % self._row_count].copy()
             if self._words[_ROW_HEAD] - head < self._row_count - 1:
                 return row
 

@@ -1,9 +1,8 @@
 """All ticks, frames and events of a run in virtual time, kept in memory; stands where the ring would."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hilplant.arrays import Floats
+from hilplant.arrays import Floats, Records
 from hilplant.bus.frame import Frame
 from hilplant.runtime.commands import COMMAND_DTYPE, ChannelCommand
 from hilplant.runtime.frame_slot import FRAME_DTYPE
@@ -39,7 +38,7 @@ class Tape:
         """Return all rows."""
         return self._rows[: self.ticks]
 
-    def read_frames(self) -> NDArray[np.void]:
+    def read_frames(self) -> Records:
         """Return all frames as the ring holds them."""
         found = np.zeros(len(self.frames), FRAME_DTYPE)
         for index, (tick, bus_ns, frame, sent) in enumerate(self.frames):
@@ -48,6 +47,6 @@ class Tape:
             found[index] = (tick, bus_ns, frame.identifier, flags, len(frame.data), 0, list(data))
         return found
 
-    def read_events(self) -> NDArray[np.void]:
+    def read_events(self) -> Records:
         """Return all events as the ring holds them."""
         return np.array([tuple(event) for event in self.events], COMMAND_DTYPE)

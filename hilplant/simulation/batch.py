@@ -13,9 +13,8 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hilplant.arrays import Floats
+from hilplant.arrays import Floats, Whole
 from hilplant.models.batch import simulate_columns
 from hilplant.models.load import WHOLE_WIPER
 from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX
@@ -91,7 +90,7 @@ def _run(arrays: tuple[Any, ...], share: range) -> None:
 
 
 def _check(  # noqa: PLR0913, PLR0917
-    states: Floats, inputs: Floats, parameters: Floats, tables: Floats, places: NDArray[np.int64], output: Floats
+    states: Floats, inputs: Floats, parameters: Floats, tables: Floats, places: Whole, output: Floats
 ) -> None:
     """Refuse arrays that compiled code would not survive."""
     sets, ticks = len(parameters), inputs.shape[1]

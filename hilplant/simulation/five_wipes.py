@@ -3,9 +3,8 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hilplant.arrays import Floats
+from hilplant.arrays import Flags, Floats
 from hilplant.bench.assembly import Bench
 from hilplant.models.tables import LEFT_ROCKER
 from hilplant.simulation.crank_torque import WETNESS, Conditions, crank_torque
@@ -37,7 +36,7 @@ class Wipe:
     crank_rad: Floats
     torque_n_m: Floats
     friction_n_m: Floats
-    forward: NDArray[np.bool_]
+    forward: Flags
 
     @property
     def mean_n_m(self) -> float:
@@ -62,7 +61,7 @@ def five_wipes(bench: Bench) -> list[Wipe]:
     return [_wipe(bench, crank, forward, conditions) for conditions in WIPES]
 
 
-def _wipe(bench: Bench, crank_rad: Floats, forward: NDArray[np.bool_], conditions: Conditions) -> Wipe:
+def _wipe(bench: Bench, crank_rad: Floats, forward: Flags, conditions: Conditions) -> Wipe:
     whole, lifted = (
         crank_torque(bench, crank_rad, CRANK_SPEED_RAD_S, each)
         for each in (conditions, replace(conditions, pressed=0.0))
@@ -82,7 +81,7 @@ def shape_difference(one: Wipe, other: Wipe) -> float:
     return float(np.sqrt(np.mean(apart**2)))
 
 
-def _forward(bench: Bench, crank_rad: Floats) -> NDArray[np.bool_]:
+def _forward(bench: Bench, crank_rad: Floats) -> Flags:
     """Say at which angles the left arm is on its way from park to the other end of its sweep."""
     rocker = bench.tables[:-1, LEFT_ROCKER, 0]
     far = np.argmax(np.abs(rocker - rocker[0])) * TURN_RAD / len(rocker)

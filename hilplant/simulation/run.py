@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hilplant.arrays import Floats
 from hilplant.bench.assembly import Bench, initial_state, load_bench
@@ -22,17 +21,17 @@ from hilplant.units import SECOND_NS
 class Result:
     """Time and signals of a simulation; row k is the tick at time k * step."""
 
-    time_s: NDArray[np.float64]
-    inputs: NDArray[np.float64]
-    outputs: NDArray[np.float64]
+    time_s: Floats
+    inputs: Floats
+    outputs: Floats
 
-    def __getitem__(self, name: str) -> NDArray[np.float64]:
+    def __getitem__(self, name: str) -> Floats:
         """Return the column of one signal of ``signals.OUTPUTS`` or ``signals.INPUTS``, or `time_s`."""
         if name == "time_s":
             return self.time_s
         return self.outputs[:, OUTPUT_INDEX[name]] if name in OUTPUT_INDEX else self.inputs[:, INPUT_INDEX[name]]
 
-    def columns(self) -> dict[str, NDArray[np.float64]]:
+    def columns(self) -> dict[str, Floats]:
         """Return time, all outputs in their order, then those inputs that are not outputs as well."""
         return {name: self[name] for name in dict.fromkeys(("time_s", *OUTPUT_INDEX, *INPUT_INDEX))}
 
@@ -86,7 +85,7 @@ def simulate_to_file(bench: str | Path, scenario: str | Path, out: str | Path) -
     Raises
     ------
     Failure
-        BenchError for mistakes in either file, TableError when `out` cannot be written; when memory runs out.
+        BenchError for mistakes in either file; when `out` cannot be written or memory runs out.
 
     """
     check_ending(out)

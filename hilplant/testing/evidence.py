@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Flags, Floats, Whole
 from hilplant.bus.frame import Frame
 from hilplant.bus.protection import Checker, FrameCheck, Protection
 from hilplant.recording.format import INPUT_COLUMNS, OUTPUT_COLUMNS, STATUS_COLUMNS
@@ -20,8 +20,6 @@ from hilplant.units import SECOND_NS
 from hilplant.verdicts.arrays import Trace
 from hilplant.verdicts.expectations import Expectation, Frames
 from hilplant.verdicts.frames import FrameTimes
-
-Floats = NDArray[np.float64]
 
 MODE = FIRST_STATUS + STATUS_INDEX["mode"]
 _EDGES = {KINDS[COMES]: True, KINDS[GOES]: False}
@@ -47,7 +45,7 @@ class Evidence:
 
     step_ns: int
     rows: Floats
-    frame_ticks: NDArray[np.int64]
+    frame_ticks: Whole
     frames: Sequence[Frame]
     edges: Sequence[FaultEdge] = ()
     start: int = 0
@@ -89,9 +87,7 @@ class Evidence:
         count = int(places[-1]) + 1 if len(places) else 0
         return self._signal(name, self.rows, places, count, database)[self.start :]
 
-    def _signal(
-        self, name: str, rows: Floats, places: NDArray[np.int64], count: int, database: DatabaseSignals
-    ) -> Floats:
+    def _signal(self, name: str, rows: Floats, places: Whole, count: int, database: DatabaseSignals) -> Floats:
         column = column_of(name)
         values = np.full(count, np.nan)
         if column is not None:
@@ -103,7 +99,7 @@ class Evidence:
         values[ticks[within]] = decoded[within]  # of several in a tick the last one stays
         return _held(values, np.unique(ticks[within]))
 
-    def _decoded(self, message: Any, signal: str) -> tuple[NDArray[np.int64], Floats]:
+    def _decoded(self, message: Any, signal: str) -> tuple[Whole, Floats]:
         places = self._places(message)
         found = [(index, value_of(message, self.frames[index].data, signal)) for index in places]
         kept = [(index, value) for index, value in found if value is not None]
@@ -160,7 +156,7 @@ def recorded(recording: Recording) -> Evidence:
     return Evidence(step_ns, whole, np.array(ticks, np.int64), frames, edges, start)
 
 
-def _held(values: Floats, places: NDArray[np.int64]) -> Floats:
+def _held(values: Floats, places: Whole) -> Floats:
     """Fill every tick that has no value with that of the tick before; nan before the first."""
     if not len(places):
         return values
@@ -178,9 +174,7 @@ def value_of(message: Any, data: bytes, signal: str) -> float | None:
     return None if value is None else float(value)
 
 
-def checked_frames(
-    protection: Protection | None, payloads: Sequence[bytes]
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def checked_frames(protection: Protection | None, payloads: Sequence[bytes]) -> tuple[Flags, Flags]:
     """Say of each frame whether its counter and its checksum are right; one counter that jumps counts once."""
     counter, crc = [], []
     checker = Checker(protection) if protection is not None else None

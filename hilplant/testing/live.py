@@ -5,9 +5,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hilplant.arrays import Floats
+from hilplant.arrays import Flags, Floats
 from hilplant.runtime import commands as c
 from hilplant.runtime.follower import Follower
 from hilplant.runtime.frame_slot import ERROR, EXTENDED, REMOTE
@@ -70,7 +69,7 @@ class LiveJudge:
         seen[self._unseen] = False
         return [Judged(each, self._ended(each, seen)) for each in self._order]
 
-    def _ended(self, expectation: Expectation, seen: NDArray[np.bool_]) -> Judgement:
+    def _ended(self, expectation: Expectation, seen: Flags) -> Judgement:
         if expectation in self._live:
             return self._live[expectation].end()
         assert isinstance(expectation.rule, Frames)  # the others are judged tick by tick

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.identify.experiment import Run
 from hilplant.identify.local_search import search
@@ -15,7 +16,6 @@ from hilplant.identify.residuals import LeastSquares, expected_noise
 from hilplant.identify.run_of_data import make_run
 from hilplant.identify.twin import Corruption, TwinCondition, recorded
 from hilplant.identify.uncertainty import spread, verdicts
-from hilplant.measurements.measurement import Samples
 
 
 class Trial(NamedTuple):
@@ -48,7 +48,7 @@ def twin_runs(bench: Bench, conditions: Sequence[TwinCondition], how: Corruption
     ]
 
 
-def off_start(choice: Choice, seed: int, part: float) -> Samples:
+def off_start(choice: Choice, seed: int, part: float) -> Floats:
     """Return every value off by this part of itself, up or down at random."""
     signs = np.random.default_rng([seed, 20]).choice([-1.0, 1.0], len(choice))
     return np.asarray(choice.values * (1.0 + part * signs), np.float64)

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.bench import Bench, load_bench
 from hilplant.models.load import LOADS
 from hilplant.models.narx import NETWORK
 from hilplant.models.plant import simulate_rows
 from hilplant.models.row import pack
-from hilplant.perf.c_step import Rows, compile_step
+from hilplant.perf.c_step import compile_step
 from hilplant.perf.networks_cost import calm_minute
 from hilplant.perf.samples import alternate
 from hilplant.perf.step_cost import timed_s
@@ -103,7 +104,7 @@ def compare(seconds: float) -> list[Compared]:
 
 
 def _compared(  # noqa: PLR0913, PLR0917
-    name: str, bench: Bench, in_c: Any, truth: Rows, ours: BusRun, physical: BusRun
+    name: str, bench: Bench, in_c: Any, truth: Floats, ours: BusRun, physical: BusRun
 ) -> Compared:
     inputs = calm_minute(bench)
     outputs = np.empty((len(inputs), len(OUTPUTS)))
@@ -131,7 +132,7 @@ def _compared(  # noqa: PLR0913, PLR0917
     )
 
 
-def finer_current(bench: Bench) -> Rows:
+def finer_current(bench: Bench) -> Floats:
     """Return the current of the minute at each tick from steps that are `FINER` times shorter."""
     inputs = np.repeat(calm_minute(bench), FINER, axis=0)
     outputs = np.empty((len(inputs), len(OUTPUTS)))

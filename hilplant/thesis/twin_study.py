@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hilplant import resources
+from hilplant.arrays import Floats
 from hilplant.bench import Bench
 from hilplant.checked_yaml.yaml_reader import read_text
 from hilplant.identify.cost import cost_of
@@ -19,13 +20,13 @@ from hilplant.identify.optimisers import OPTIMISERS
 from hilplant.identify.parameters import Choice, chosen, search_space
 from hilplant.identify.three_stages import Identified, Task, identify
 from hilplant.identify.twin import CLEAN, Corruption, recorded, thesis_conditions
-from hilplant.measurements.measurement import Measurement, Samples
+from hilplant.measurements.measurement import Measurement
 from hilplant.signals import OUTPUT_INDEX
 from hilplant.simulation.batch import simulate_batch
 from hilplant.thesis.coverage import coverage, holds, trials, twin_runs
 
 Say = Callable[[str], None]
-Batch = Callable[[Samples, Samples, Samples, Samples, Samples], None]
+Batch = Callable[[Floats, Floats, Floats, Floats, Floats], None]
 
 FITTED_V, HELD_OUT_V = (12.0, 14.0, 16.0), (10.0, 13.0, 15.0)
 NOISE = Corruption()
@@ -52,7 +53,7 @@ class Full(NamedTuple):
         return self.first_stage_s + times.global_s + times.local_s + times.intervals_s
 
 
-def published_start(choice: Choice) -> Samples:
+def published_start(choice: Choice) -> Floats:
     """Return what is known beforehand: the motor of Table 5-3, the friction on the screen of Figure 8-3."""
     motor = _read("measurements", "table_5_3.yaml")["parameters"]
     screen = _read("screens", "figure_8_3.yaml")
@@ -177,7 +178,7 @@ def speed_line(bench: Bench, figures: dict[str, Any], sets: int = 40, rounds: in
     columns = tuple(OUTPUT_INDEX[name] for name in COLUMNS)
     steps = sum(len(run) for run in runs)
 
-    def ours(states: Samples, inputs: Samples, rows: Samples, tables: Samples, output: Samples) -> None:
+    def ours(states: Floats, inputs: Floats, rows: Floats, tables: Floats, output: Floats) -> None:
         simulate_batch(states, inputs, rows, tables, columns, output)
 
     with TemporaryDirectory(prefix="hilplant-c-") as folder:

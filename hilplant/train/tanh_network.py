@@ -8,9 +8,8 @@ together from one block for each output.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hilplant.arrays import Floats
+from hilplant.arrays import Floats, Whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +19,7 @@ class Samples:
     inputs: Floats
     targets: Floats
 
-    def taken(self, rows: NDArray[np.int64]) -> "Samples":
+    def taken(self, rows: Whole) -> "Samples":
         """Return some of them."""
         return Samples(self.inputs[rows], self.targets[rows])
 
@@ -71,7 +70,7 @@ class TanhNetwork:
         whole[:, columns] = self.own_jacobian(weights, inputs, output)
         return whole
 
-    def columns(self, output: int) -> NDArray[np.int64]:
+    def columns(self, output: int) -> Whole:
         """Return the places of the weights that an output depends on."""
         border = self.neurons * (self.inputs + 1)
         first = border + output * (self.neurons + 1)

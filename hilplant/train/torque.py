@@ -5,10 +5,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from hilplant.arrays import Floats
+from hilplant.arrays import Floats, Whole
 from hilplant.bench.assembly import Bench
 from hilplant.progress import OnProgress, ProgressReport, unseen
 from hilplant.train.levenberg_marquardt import DescentSettings, Minimum, minimise
@@ -154,7 +153,7 @@ def _scaled(scale: Scale, part: Wipes, plan: TrainingPlan) -> Samples:
 
 
 def _with_errors(
-    data: Data, plan: TrainingPlan, minimum: Minimum, made: tuple[TanhNetwork, Scale, list[NDArray[np.int64]]]
+    data: Data, plan: TrainingPlan, minimum: Minimum, made: tuple[TanhNetwork, Scale, list[Whole]]
 ) -> TrainedTorque:
     network, scale, sets = made
     none = FitErrors(0.0, 0.0, 0.0, 0.0, 0.0)

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hilplant.arrays import Floats
 from hilplant.atomic_write import write_text
 from hilplant.checked_yaml.checksummed import seal
 
@@ -22,7 +22,7 @@ def write_file(path: Path, content: Mapping[str, Any]) -> None:
     write_text(path, sealed_text(content))
 
 
-def data_hash(*arrays: NDArray[np.float64]) -> str:
+def data_hash(*arrays: Floats) -> str:
     """Return the hash of training data, to nine digits of the largest number of each array."""
     digest = hashlib.sha256()
     for array in arrays:

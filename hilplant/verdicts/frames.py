@@ -5,13 +5,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hilplant.arrays import Flags
+from hilplant.arrays import Flags, Whole
 from hilplant.verdicts.expectations import Frames
 from hilplant.verdicts.judgement import LOST, NO_WINDOW, Judgement
-
-Ticks = NDArray[np.int64]
 
 NO_FRAME = "no frame came"
 
@@ -27,7 +24,7 @@ class FrameTimes:
     `counter_ok` and `crc_ok` say of each frame whether it passed; empty where nothing protects the message.
     """
 
-    ticks: Ticks
+    ticks: Whole
     cycle_ms: float = 0.0
     counter_ok: Flags = field(default_factory=_nothing)
     crc_ok: Flags = field(default_factory=_nothing)
@@ -59,7 +56,7 @@ def gap_limits(rule: Frames, cycle_ms: float) -> tuple[float, float]:
     return cycle_ms - rule.highest, cycle_ms + rule.highest
 
 
-def _wrong(rule: Frames, right: Flags, ticks: Ticks) -> Judgement:
+def _wrong(rule: Frames, right: Flags, ticks: Whole) -> Judgement:
     if not len(ticks):
         return Judgement("blocked", reason=NO_FRAME)
     wrong = ticks[~right]
@@ -69,7 +66,7 @@ def _wrong(rule: Frames, right: Flags, ticks: Ticks) -> Judgement:
     return Judgement("pass", margin, int(ticks[-1]))
 
 
-def _gaps(rule: Frames, known: FrameTimes, ticks: Ticks, window: tuple[int, int], step_ms: float) -> Judgement:
+def _gaps(rule: Frames, known: FrameTimes, ticks: Whole, window: tuple[int, int], step_ms: float) -> Judgement:
     """Judge the gaps between frames, and from the window's ends to the first and last frame."""
     first, last = window
     bounds = np.concatenate([[first], ticks, [last]])

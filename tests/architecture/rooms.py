@@ -63,7 +63,8 @@ ARROWS: dict[str, str] = {
     "ecu": f"{_PHYSICS} checked_yaml bus bench runtime",
     "recording": "units declaration signals arrays failure extras atomic_write jit models bus runtime",
     "channel": (
-        "units declaration signals failure extras companion checked_yaml models control faults bench runtime recording"
+        "units declaration signals arrays failure extras companion checked_yaml models control faults bench runtime"
+        " recording"
     ),
     "inventory": _OFFLINE,
     "c_source": _OFFLINE,

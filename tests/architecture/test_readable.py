@@ -41,6 +41,17 @@ def _lines_without_docstring(node: ast.FunctionDef) -> int:
     return lines - (docstring.count("\n") + 1 if docstring else 0)
 
 
+def test_a_type_of_arrays_has_one_name_for_all_rooms(sources: list[Any]) -> None:
+    wrong = [
+        f"{source.name}:{node.lineno}"
+        for source in sources
+        if source.name != "arrays.py"
+        for node in source.tree.body
+        if isinstance(node, ast.Assign) and ast.unparse(node.value).startswith("NDArray[")
+    ]
+    assert not wrong, f"belongs into arrays.py: {wrong}"
+
+
 def test_no_class_name_stands_twice(sources: list[Any]) -> None:
     found: dict[str, list[str]] = {}
     for source in sources:

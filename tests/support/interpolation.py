@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
-from hilplant.mechanics.planar import Floats
 from hilplant.mechanics.tables import channel_names, exact_rows, run_time_table
 from hilplant.mechanics.wiper import Wiper
 from hilplant.models.lookup import derivative, find, value
