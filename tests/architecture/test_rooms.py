@@ -3,7 +3,8 @@
 from pathlib import Path
 
 import pytest
-from architecture.rooms import ARROWS, FREE, LAYERS, PAGE, House, layer_of, with_drawing
+from architecture.house import House
+from architecture.rooms import ARROWS, FREE, LAYERS, PAGE, layer_of, with_drawing
 
 
 @pytest.fixture(scope="module")
