@@ -133,6 +133,7 @@ export class Session extends EventTarget {
     this.words = words;
     this.dispatchEvent(new CustomEvent("stale", { detail: words }));
     this.dispatchEvent(new Event("state"));
+    if (this.samples.timeS) this.dispatchEvent(new Event("row")); // the controls go off with the last row: no other comes
   }
 
   // Choose the signals of all charts; nothing is sent while the page is hidden.
