@@ -12,6 +12,9 @@ from hilplant.checked_yaml.checked import Checked, NotNegative
 from hilplant.checked_yaml.reading import Reading
 from hilplant.units import SECOND_NS
 
+#: Decimals of a nanosecond: sums of times are rounded to it, so that an edge comes in its own tick.
+_DIGITS = 9
+
 
 def rounds_of(times_s: Floats, length_s: float) -> tuple[Floats, Floats]:
     """Return how many rounds are over, and the time in the present one [s], exact to the nanosecond."""
@@ -62,13 +65,14 @@ class SupplyProfile(Checked):
         volts = np.full(len(times_s), last)
         begin, before = 0.0, np.where(rounds > 0.0, last, self.start_v)
         for step in self.steps:
-            moving = (within >= begin) & (within < begin + step.in_s)
+            arrived = round(begin + step.in_s, _DIGITS)
+            left = round(arrived + step.hold_s, _DIGITS)
+            moving = (within >= begin) & (within < arrived)
             part = (within - begin) / step.in_s if step.in_s else within
             volts = np.where(moving, before + (step.to_v - before) * part, volts)
-            begin += step.in_s
-            held = (within >= begin) & (within < begin + step.hold_s)
-            volts = np.where(held, step.held(within - begin), volts)
-            begin, before = begin + step.hold_s, step.held(np.full(len(times_s), step.hold_s))
+            held = (within >= arrived) & (within < left)
+            volts = np.where(held, step.held(within - arrived), volts)
+            begin, before = left, step.held(np.full(len(times_s), step.hold_s))
         return np.where(rounds >= self.times, last, volts)
 
 
