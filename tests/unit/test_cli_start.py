@@ -3,7 +3,10 @@
 import subprocess
 import sys
 
+import pytest
+
 import hilplant
+from hilplant.cli.groups import FoundCommands
 
 _LIST = """
 import contextlib, io, sys
@@ -26,3 +29,11 @@ def test_the_list_of_commands_imports_no_room_but_the_command_line() -> None:
     rooms = {name.split(".")[1] for name in modules if name.startswith(f"{hilplant.__name__}.")}
     assert rooms <= _SMALL
     assert not _HEAVY & {name.split(".")[0] for name in modules}
+
+
+@pytest.mark.parametrize("group", ["", ".plot", ".study", ".train"])
+def test_the_list_says_of_each_command_what_the_command_says_of_itself(group: str) -> None:
+    found = FoundCommands(f"hilplant.cli.commands{group}", ())
+    assert len(found) > 3
+    for name, command in found.items():
+        assert found.listed(name).get_short_help_str(200) == command.get_short_help_str(200), name

@@ -17,7 +17,6 @@ app = command_app()
 
 
 @app.command(
-    short_help="Say what is wrong with a measurement, and what it shows.",
     epilog='Example: hilplant inspect rig.csv --columns "voltage=U1,current=I1[mA],park=PS"',
 )
 def inspect(  # noqa: PLR0913, PLR0917
@@ -28,9 +27,9 @@ def inspect(  # noqa: PLR0913, PLR0917
     gear_ratio: Annotated[float, typer.Option(min=1.0, help="turns of the motor in one turn of the crank")] = 63.0,
     json_file: JsonFile = None,
 ) -> None:
-    """Say what is wrong with a measurement, what was done to it, and what motor it shows.
+    """Say what is wrong with a measurement, and what it shows.
 
-    Exit code 0 when it will do for identification, else 1.
+    What was done to it is told, and the motor that it shows. Exit code 0 when it will do for identification, else 1.
     """
     need("identify")
     from hilplant.cli.actions.inspect import Inspection, inspect_data

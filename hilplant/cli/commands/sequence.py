@@ -13,7 +13,6 @@ app = command_app()
 
 
 @app.command(
-    short_help="Play a test sequence for identification, or write it.",
     epilog="Example: hilplant sequence default --out sequence.yaml",
 )
 def sequence(
@@ -23,9 +22,10 @@ def sequence(
     volts: Annotated[str, typer.Option(help="voltages [V] with commas between")] = "10,12,14,16",
     channel: Channel = None,
 ) -> None:
-    """Play a test sequence for identification: on the bench's bus, or with --out into a scenario.
+    """Play a test sequence for identification, or write it.
 
-    On the bus it commands relays and supply of a real rig and steps on at the park edges.
+    On the bench's bus it commands relays and supply of a real rig and steps on at the park edges; with --out it writes
+    a scenario.
     """
     from hilplant.identify.sequence_runs import play_on_bus, stages_of, write_scenario
 

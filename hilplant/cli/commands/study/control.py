@@ -14,7 +14,6 @@ app = command_app()
 
 
 @app.command(
-    short_help="Compare all velocity controllers, section 7.2.",
     epilog="Example: hilplant study control --out study --json study.json",
 )
 def control(
@@ -23,7 +22,7 @@ def control(
     search: Annotated[bool, typer.Option("--search", help="search better gains instead; takes minutes")] = False,
     json_file: JsonFile = None,
 ) -> None:
-    """Put all velocity controllers through the test of section 7.2.
+    """Compare all velocity controllers, section 7.2.
 
     With the speed sensor and without it, and through an hour of rain.
     """

@@ -10,13 +10,12 @@ app = command_app()
 
 
 @app.command(
-    short_help="Compute Tables 5-2 to 5-5 again.",
     epilog="Example: hilplant study identification --json study.json",
 )
 def identification(json_file: JsonFile = None) -> None:
-    """Compute Tables 5-2 to 5-5 again, each printed number beside ours.
+    """Compute Tables 5-2 to 5-5 again.
 
-    Exit code 1 when one is neither reached nor explained by rounding.
+    Each printed number stands beside ours. Exit code 1 when one is neither reached nor explained by rounding.
     """
     need("identify")
     from hilplant.thesis.published import as_table, figures, published_lines

@@ -10,13 +10,13 @@ app = command_app()
 
 
 @app.command(
-    short_help="Hold the step against an adaptive solver.",
     epilog="Example: hilplant study solver default",
 )
 def solver(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
-    """Hold the step against an adaptive solver of the same equations.
+    """Hold the step against an adaptive solver.
 
-    Start, wet and dry, brown-out, stall, reverse, park, wind. Exit code 1 when an error is above 0.5 % of range.
+    It has the same equations. Start, wet and dry, brown-out, stall, reverse, park, wind. Exit code 1 when an error is
+    above 0.5 % of range.
     """
     from hilplant.cli.report import print_report
     from hilplant.thesis.mechanics_studies import solver_study

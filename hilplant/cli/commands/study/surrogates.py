@@ -14,7 +14,6 @@ app = command_app()
 
 
 @app.command(
-    short_help="Compare cost and accuracy of all loads and motors.",
     epilog="Example: hilplant study surrogates --seconds 600 --out study",
 )
 def surrogates(
@@ -22,9 +21,9 @@ def surrogates(
     out: Annotated[Path | None, typer.Option(help="folder for the picture")] = None,
     json_file: JsonFile = None,
 ) -> None:
-    """Compare cost and accuracy of all loads and motors, and what an ECU sees of them.
+    """Compare cost and accuracy of all loads and motors.
 
-    Exit code 1 when to the ECU one is not as good as the physics that it stands for.
+    And what an ECU sees of them. Exit code 1 when to the ECU one is not as good as the physics that it stands for.
     """
     need("train")
     from hilplant.atomic_write import make_folder

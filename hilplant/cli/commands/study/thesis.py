@@ -10,13 +10,12 @@ app = command_app()
 
 
 @app.command(
-    short_help="Run the thesis' own checks again.",
     epilog="Example: hilplant study thesis",
 )
 def thesis(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
-    """Run the thesis' own checks of motor, park circuits and mechanics.
+    """Run the thesis' own checks again.
 
-    Exit code 1 when one does not hold.
+    Of motor, park circuits and mechanics. Exit code 1 when one does not hold.
     """
     from hilplant.cli.report import print_report
     from hilplant.thesis.mechanics_studies import thesis_study

@@ -13,7 +13,6 @@ app = command_app()
 
 
 @app.command(
-    short_help="Identify data of a known bench.",
     epilog="Example: hilplant study twin --seeds 100 --full 5 --json twin.json",
 )
 def twin(
@@ -23,9 +22,9 @@ def twin(
     compare: Annotated[bool, typer.Option("--compare", help="also compare the global searches")] = False,
     json_file: JsonFile = None,
 ) -> None:
-    """Identify data of a known bench, and hold the result against the truth.
+    """Identify data of a known bench.
 
-    Exit code 1 when errors or intervals are worse than they are to be.
+    The result is held against the truth. Exit code 1 when errors or intervals are worse than they are to be.
     """
     need("identify")
     from hilplant.bench import load_bench

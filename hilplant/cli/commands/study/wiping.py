@@ -8,13 +8,12 @@ app = command_app()
 
 
 @app.command(
-    short_help="Report the wipe rate and currents, 9 to 16 V.",
     epilog="Example: hilplant study wiping default",
 )
 def wiping(bench: BenchName = DEFAULT, json_file: JsonFile = None) -> None:
-    """Report the wipe rate and currents from 9 to 16 V, dry and wet.
+    """Report the wipe rate and currents, 9 to 16 V.
 
-    With the three figures of FMVSS 104 beside them.
+    Dry and wet, with the three figures of FMVSS 104 beside them.
     """
     from hilplant.cli.report import print_report
     from hilplant.thesis.mechanics_studies import wiping_study
