@@ -16,6 +16,8 @@ SIDES = ("left", "right")
 SCREENS = (("dry", 0.0), ("tacky", 0.5), ("wet", 1.0))
 #: The same for one side, where a number below 0 stands for what the whole screen has.
 SIDE_SCREENS = (("same", -1.0), *SCREENS)
+#: A wanted speed below 0 stands for what the controller was started with.
+OWN = (("own", -1.0),)
 #: Which model gives the load's torque or moves the motor: physical (there is no network, or it has not been asked),
 #: network; or the physical one because the motor stands, or because the network was not trained for what is asked.
 ACTIVE_MODELS = ("physical", "network", "standstill", "outside")
@@ -70,6 +72,10 @@ class Inputs(NamedTuple):
         float, real("mm/h", 0.0, 500.0, "rain on the ground; wets the screen where water is modelled")
     ] = 0.0
     washer_pump: Annotated[float, flag("washer pump: 1 sprays the screen, where water is modelled", guarded=0.0)] = 0.0
+    reference_rad_s: Annotated[
+        float,
+        real("rad/s", -1.0, 20.0, "wanted crank speed of a controller; below 0 it is the controller's own", names=OWN),
+    ] = -1.0
 
 
 class Outputs(NamedTuple):
@@ -192,11 +198,14 @@ INPUTS, OUTPUTS, STATUS = declared(Inputs), declared(Outputs), declared(Status)
 STALK, ECU_STATUS = declared(StalkInputs), declared(EcuStatus)
 INPUT_INDEX, OUTPUT_INDEX, STATUS_INDEX = index_of(INPUTS), index_of(OUTPUTS), index_of(STATUS)
 
+#: Which input carries a controller's wanted speed.
+WANTED = INPUT_INDEX["reference_rad_s"]
+
 #: Signals that a sent frame may carry, in the order of the list that the codec reads.
 PUBLISHED = OUTPUTS + STATUS
 PUBLISHED_INDEX = index_of(PUBLISHED)
 
-#: What the stand-in ECU hears and says: the plant's lists with its own behind them.
-ECU_RX = PUBLISHED + STALK
+#: What an ECU hears and says: the plant's lists, a wanted speed that somebody sends, and its own behind them.
+ECU_RX = (*PUBLISHED, INPUTS[WANTED], *STALK)
 ECU_TX = INPUTS + ECU_STATUS
 ECU_RX_INDEX, ECU_TX_INDEX = index_of(ECU_RX), index_of(ECU_TX)

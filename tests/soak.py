@@ -87,7 +87,7 @@ class Car:
             self.wind_m_s = chance.choice([0.0, 0.0, 15.0, 30.0])
         return self.stalk
 
-    def __call__(self, _bus_ns: int, _state: Any, inputs: Any) -> bool:
+    def __call__(self, _bus_ns: int, _state: Any, inputs: Any, _parameters: Any) -> bool:
         for name, value in (("supply_v", self.supply_v), ("screen", self.screen), ("vehicle_speed_m_s", self.wind_m_s)):
             inputs[INPUT_INDEX[name]] = value
         return True

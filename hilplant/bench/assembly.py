@@ -17,7 +17,7 @@ from hilplant.bench.description import BenchDescription, LoopSettings
 from hilplant.bench.doubts import note_doubts, offer_protection
 from hilplant.bench.ecu_description import EcuSettings
 from hilplant.bench.ecu_messages import EcuMessages, build_ecu_messages
-from hilplant.bench.ecu_side import EcuSide, build_ecu_side, note_one_way
+from hilplant.bench.ecu_side import EcuSide, build_ecu_side, heard_references, note_one_way
 from hilplant.bench.mapping import MappedMessage
 from hilplant.bench.plant import Plant, build_plant
 from hilplant.bench.source import Source, read_source
@@ -87,7 +87,8 @@ class Bench:
         periods_ns = {message.name: message.period_ns for message in self.send}
         sent = [mapped for mapped in self.reports if mapped.message.name in periods_ns]
         reports = [(mapped, periods_ns[mapped.message.name]) for mapped in sent]
-        return build_ecu_side(self.commands, reports, self.ecu.period_ms, self.ecu_messages)
+        side = build_ecu_side(self.commands, reports, self.ecu.period_ms, self.ecu_messages)
+        return replace(side, reference=heard_references(self.commands, self.receive))
 
 
 def load_bench(source: BenchSource = "default") -> Bench:

@@ -8,7 +8,7 @@ from hilplant.bench.mapping import MappedMessage
 from hilplant.bench.timing import CYCLES_UNTIL_LOST
 from hilplant.bus.codec import MappingError, ReceivedMessage, SentMessage, Timing, received_message, sent_message
 from hilplant.checked_yaml.spot import Spot
-from hilplant.signals import ECU_RX, ECU_TX
+from hilplant.signals import ECU_RX, ECU_TX, INPUTS, WANTED
 from hilplant.units import MILLISECOND_NS
 
 #: Any period serves where nothing but the mapping is examined.
@@ -19,13 +19,15 @@ ECU_PERIOD_MS = 5.0
 class EcuSide:
     """Messages that the ECU receives, into ``signals.ECU_RX``, and sends, out of ``signals.ECU_TX``.
 
-    `receive` come from the plant and `send` go to it; `stalk` and `status` are between the ECU and its driver.
+    `receive` come from the plant and `send` go to it; `stalk` and `status` are between the ECU and its driver;
+    `reference` are those commands that carry a wanted speed, which a velocity controller hears as the plant does.
     """
 
     receive: tuple[ReceivedMessage, ...]
     send: tuple[SentMessage, ...]
     stalk: tuple[ReceivedMessage, ...]
     status: tuple[SentMessage, ...]
+    reference: tuple[ReceivedMessage, ...] = ()
 
 
 def build_ecu_side(
@@ -49,6 +51,20 @@ def build_ecu_side(
     received = tuple(_received(mapped, period_ns) for mapped, period_ns in reports)
     sent = [_sent(mapped, period_ms) for mapped in commands if _commands_relay(mapped) or _can_be_sent(mapped)]
     return EcuSide(received, tuple(sent), own.stalk, own.status)
+
+
+def heard_references(
+    commands: Sequence[MappedMessage], as_plant: Sequence[ReceivedMessage]
+) -> tuple[ReceivedMessage, ...]:
+    """Build those `commands` that carry a wanted speed, with nothing else of them; timeouts are the plant's."""
+    timeouts_ns = {message.name: message.timeout_ns for message in as_plant}
+    found = []
+    for mapped in commands:
+        wanted = [mapping for mapping in mapped.mappings if mapping.plant_signal == INPUTS[WANTED].name]
+        if wanted:
+            timeout_ns = timeouts_ns[mapped.message.name]
+            found.append(received_message(mapped.message, wanted, ECU_RX, timeout_ns, mapped.protection))
+    return tuple(found)
 
 
 def note_one_way(spot: Spot, commands: Sequence[MappedMessage]) -> None:

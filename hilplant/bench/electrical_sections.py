@@ -1,11 +1,13 @@
 """What a bench says about supply, wires and relays; whatever is left out is ideal."""
 
+from typing import Annotated
+
 from pydantic import Field
 
 from hilplant.bench.durations import Milliseconds
 from hilplant.bench.parts import WithAssumptions
 from hilplant.checked_yaml.checked import Checked, NotNegative
-from hilplant.models.records import Relays, RelayTiming, Wire, Wiring
+from hilplant.models.records import Relays, RelayTiming, Sensors, Wire, Wiring
 from hilplant.units import MILLISECOND_NS
 
 
@@ -48,6 +50,24 @@ class RelaysSection(Checked):
         """Return the parameters as the models take them; ideal relays are not altered."""
         on, fast = self.relay_on.record(step_ns), self.relay_fast.record(step_ns)
         return Relays(float((on, fast) != (RelayTiming(), RelayTiming())), on, fast)
+
+
+class CurrentSensorSection(WithAssumptions):
+    """How the motor current is measured: `measured_current_a`, and what a controller inside the loop sees."""
+
+    noise_a: NotNegative = Field(default=0.0, description="standard deviation of its white noise")
+    ripple: Annotated[float, Field(ge=0, le=1)] = Field(
+        default=0.0, description="height of the commutator's ripple, as a part of the current"
+    )
+    ripples_a_turn: NotNegative = Field(
+        default=0.0,
+        description="how many in a turn of the motor shaft: the commutator's bars, twice them if odd",
+    )
+
+    def record(self) -> Sensors:
+        """Return the parameters as the models take them; an ideal sensor is not altered."""
+        made = Sensors(current_noise_a=self.noise_a, current_ripple=self.ripple, ripples_a_turn=self.ripples_a_turn)
+        return made._replace(altered=float(made != Sensors()))
 
 
 def wiring(supply: SupplySection | None, wires: WiresSection | None) -> Wiring:

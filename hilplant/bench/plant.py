@@ -26,7 +26,7 @@ from hilplant.mechanics.coefficients import Aerodynamics, check_aerodynamics
 from hilplant.models.circuit import CIRCUITS
 from hilplant.models.load import LOADS
 from hilplant.models.mechanical_records import LinkageCondition, Obstacles
-from hilplant.models.records import Blade, Friction, Load, Parameters, ParkSwitch, Relays
+from hilplant.models.records import Blade, Friction, Load, Parameters, ParkSwitch, Relays, Sensors
 from hilplant.models.slow_records import Heat, Water, Wear
 from hilplant.models.training import load_mark, motor_mark
 from hilplant.units import MILLISECOND_NS, RAD_PER_DEG, SECOND_NS
@@ -73,6 +73,7 @@ def build_plant(spot: Spot, plant: PlantSection, step_ns: int) -> Plant | None:
         motor_model=mover.place,
         wiring=wiring(plant.supply, plant.wires),
         relays=plant.relays.record(step_ns) if plant.relays is not None else Relays(),
+        sensors=plant.current_sensor.record() if plant.current_sensor is not None else Sensors(),
         heat=plant.heat.record() if plant.heat is not None else Heat(),
         obstacles=plant.obstacles.record() if plant.obstacles is not None else Obstacles(),
         linkage=plant.backlash.record() if plant.backlash is not None else LinkageCondition(),

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union, cast
 from pydantic import Field, WithJsonSchema, create_model, field_validator, model_validator
 
 from hilplant.bench.durations import Milliseconds
-from hilplant.bench.electrical_sections import RelaysSection, SupplySection, WiresSection
+from hilplant.bench.electrical_sections import CurrentSensorSection, RelaysSection, SupplySection, WiresSection
 from hilplant.bench.heat_section import HeatSection
 from hilplant.bench.load_files import PolynomialFile, TorqueFile
 from hilplant.bench.motor_network_file import MotorNetworkFile
@@ -200,6 +200,9 @@ class PlantSection(Container):
     supply: SupplySection | None = Field(default=None, description="resistance of the supply; ideal when left out")
     wires: WiresSection | None = Field(default=None, description="wires to the motor; ideal when left out")
     relays: RelaysSection | None = Field(default=None, description="times of the relays; ideal when left out")
+    current_sensor: CurrentSensorSection | None = Field(
+        default=None, description="noise and ripple of the measured current; ideal when left out"
+    )
     heat: HeatSection | None = Field(default=None, description="how the motor gets warm; it stays cold when left out")
     obstacles: ObstaclesSection | None = Field(
         default=None, description="what stands in the arms' way; nothing when left out"

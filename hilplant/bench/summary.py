@@ -160,7 +160,7 @@ def _assumed(plant: Plant) -> list[str]:
         ("park_switch.", plant.park_switch),
         *(
             (f"{key}.", getattr(plant.section, key))
-            for key in ("supply", "wires", "relays", "heat", "obstacles", "backlash", "wear", "water")
+            for key in ("supply", "wires", "relays", "current_sensor", "heat", "obstacles", "backlash", "wear", "water")
         ),
     ]
     return [name for prefix, part in named if part is not None for name in assumed_in(part, prefix)]

@@ -10,6 +10,7 @@ from hilplant.models.park_switch import contact_now
 from hilplant.models.plant import step
 from hilplant.models.records import Parameters, State
 from hilplant.models.row import changed, unpack, write
+from hilplant.models.sensors import read_current, stick_contact
 from hilplant.signals import Inputs
 
 #: Columns of a trace: estimated speed of the crank [rad/s], K in force, resistance over the model's, weights.
@@ -26,10 +27,11 @@ class Commanded(NamedTuple):
 
 @compiled
 def measure(state: State, parameters: Parameters) -> Measured:
-    """Return what a controller sees of the plant at this instant, without delay or noise."""
-    speed = state.motor_speed_rad_s / parameters.motor.gear_ratio
+    """Return what a controller sees at this instant: the speed, and what current sensor and park contact show."""
+    gear_ratio, sensors = parameters.motor.gear_ratio, parameters.sensors
     contact = contact_now(state.crank_angle_rad, state.park_contact, state.bounce_left, parameters.park_switch)
-    return Measured(speed, state.current_a, contact.shown)
+    current = read_current(state.current_a, state.crank_angle_rad * gear_ratio, state.noise, sensors).current_a
+    return Measured(state.motor_speed_rad_s / gear_ratio, current, stick_contact(contact, sensors).shown)
 
 
 @compiled

@@ -12,17 +12,15 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from hilplant.arrays import Floats
 from hilplant.control.closed_loop import Commanded, measure
 from hilplant.control.records import Command, Measured
-from hilplant.control.reference import Reference
+from hilplant.control.reference import OWN, Reference, wanted_speed
 from hilplant.failure import Failure
 from hilplant.jit import compiled
-from hilplant.models.records import STATE_INDEX, Motor, Parameters, State
-from hilplant.models.row import unpack
-from hilplant.signals import INPUT_INDEX
+from hilplant.models.records import Motor, Parameters, State
+from hilplant.models.row import pack, unpack
+from hilplant.signals import INPUT_INDEX, WANTED
 from hilplant.units import MICROSECOND_NS, MILLISECOND_NS, SECOND_NS
 
 #: Decides: wanted crank speed [rad/s] and what is measured -> supply voltage [V], and whether by the fast brush.
@@ -35,20 +33,22 @@ LOWEST_V, HIGHEST_V = 0.0, 20.0
 OFF = Command(0.0, 0.0)
 #: A controller in the loop that was not asked for longer than this has been put aside: it begins anew.
 ASIDE_NS = 50 * MILLISECOND_NS
-#: Time [s] after which a call that does not come back is broken off, whatever it does.
+#: Time [s] after which a call that is not back is looked at: one that sleeps, or is over its budget, is broken off.
+#: One that only has no processor goes on.
 LONGEST_CALL_S = 0.05
 _REHEARSALS = 20
 
 
 class Watch(NamedTuple):
-    """The budget [ns] of a call in processor time, and the clock that tells it [ns]."""
+    """The budget [ns] of a call in processor time, the clock that tells it [ns], and a count of waits, as sleeps."""
 
     budget_ns: int
     cpu_ns: Callable[[], int]
+    waits: Callable[[], int]
 
 
 class _NeverCameBackError(Exception):
-    """The alarm: a call took longer than any may."""
+    """The alarm: a call hangs."""
 
 
 class OwnSeat:
@@ -60,11 +60,12 @@ class OwnSeat:
         self.stopped = ""
         self._make: Callable[[], Decide] = partial(maker, motor, period_s)
         self._watch, self._fresh = watch, True
+        self._began = 0, 0
         self._rehearse()
         self._decide = self._make()
         self._alarmed = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
         if self._alarmed:
-            signal.signal(signal.SIGALRM, _broken_off)
+            signal.signal(signal.SIGALRM, self._look)
 
     def _rehearse(self) -> None:
         rehearsed = self._make()
@@ -76,9 +77,12 @@ class OwnSeat:
             if self.stopped:
                 raise Failure(f"{self.stopped}, at the first rehearsal with reference 1 rad/s and all measured 0")
 
-    def decide(self, now_s: float, measured: Measured) -> Command:
-        """Take one tick: no voltage without a reference, nor once it is stopped."""
-        wanted = self.reference(now_s)
+    def decide(self, now_s: float, measured: Measured, heard_rad_s: float = OWN) -> Command:
+        """Take one tick: no voltage without a reference, nor once it is stopped.
+
+        A wanted speed that was heard goes before the reference.
+        """
+        wanted = wanted_speed(self.reference, now_s, heard_rad_s)
         if self.stopped or not wanted > 0.0:
             self.forget()
             return OFF
@@ -95,10 +99,10 @@ class OwnSeat:
 
     def _called(self, function: Callable[..., Any], *arguments: Any) -> Any:
         """Call, with an eye on the time; None, and a reason in `stopped`, when that went wrong."""
-        began_ns = self._watch.cpu_ns()
+        self._began = began_ns, _ = self._watch.cpu_ns(), self._watch.waits()
         try:
             if self._alarmed:
-                signal.setitimer(signal.ITIMER_REAL, LONGEST_CALL_S)
+                signal.setitimer(signal.ITIMER_REAL, LONGEST_CALL_S, LONGEST_CALL_S)
             try:
                 answer = function(*arguments)
             finally:
@@ -113,6 +117,12 @@ class OwnSeat:
             spent_us, budget_us = spent_ns / MICROSECOND_NS, self._watch.budget_ns / MICROSECOND_NS
             return self._stop(f"it took {spent_us:.0f} us of processor time, more than its budget of {budget_us:g} us")
         return answer
+
+    def _look(self, _signal: int, _frame: Any) -> None:
+        """Break a call off that has been gone for long, unless others have taken its processor all the time."""
+        began_ns, waits = self._began
+        if self._watch.cpu_ns() - began_ns > self._watch.budget_ns or self._watch.waits() > waits:
+            raise _NeverCameBackError
 
     def _checked(self, answer: Any) -> Command:
         try:
@@ -137,23 +147,20 @@ class OwnLoopSeat(OwnSeat):
     ) -> None:
         """Sit down beside a plant with these packed parameters."""
         super().__init__(maker, motor, period_s, reference, watch)
-        self._parameter_row, self._asked_ns = parameter_row, 0
-        _seen(np.zeros(len(STATE_INDEX)), parameter_row)
+        self._asked_ns = 0
+        _seen(pack(State()), parameter_row)
 
-    def drive(self, now_ns: int, state_row: Floats, input_row: Floats) -> bool:
+    def drive(self, now_ns: int, state_row: Floats, input_row: Floats, parameter_row: Floats) -> bool:
         """Take one tick on the loop's own rows; say whether the controller is still sound."""
         if now_ns - self._asked_ns > ASIDE_NS:
             self.forget()
         self._asked_ns = now_ns
-        command = self.decide(now_ns / SECOND_NS, _seen(state_row, self._parameter_row))
+        heard_rad_s = float(input_row[WANTED])
+        command = self.decide(now_ns / SECOND_NS, _seen(state_row, parameter_row), heard_rad_s)
         written = Commanded(float(command.voltage_v > 0.0), command.fast, command.voltage_v)
         for name, value in zip(Commanded._fields, written, strict=True):
             input_row[INPUT_INDEX[name]] = value
         return not self.stopped
-
-
-def _broken_off(_signal: int, _frame: Any) -> None:
-    raise _NeverCameBackError
 
 
 @compiled

@@ -1,14 +1,21 @@
-"""The wanted speed of the crank over time, written on a command line."""
+"""The wanted speed of the crank: over time, as written on a command line, or as it is heard while a controller runs."""
 
 import math
 from collections.abc import Callable
 
 from hilplant.failure import Failure
+from hilplant.signals import INPUTS, WANTED
 
 #: Wanted speed [rad/s] at a time [s] since the start.
 Reference = Callable[[float], float]
 
-FASTEST_RAD_S = 20.0
+#: What the heard wanted speed is until there is one; the fastest.
+OWN, FASTEST_RAD_S = INPUTS[WANTED].default, INPUTS[WANTED].maximum
+
+
+def wanted_speed(reference: Reference, now_s: float, heard_rad_s: float) -> float:
+    """Return the wanted speed [rad/s]: the heard one, or the reference's where there is none (nan, below 0)."""
+    return heard_rad_s if heard_rad_s >= 0.0 else reference(now_s)
 
 
 def parse_reference(text: str) -> Reference:

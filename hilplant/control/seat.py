@@ -7,11 +7,11 @@ import numpy as np
 from hilplant.control.closed_loop import Commanded, commanded, measure
 from hilplant.control.controller import Tables, control
 from hilplant.control.records import POWER_ON, Command, Controller, Measured, Memory
-from hilplant.control.reference import Reference
+from hilplant.control.reference import OWN, Reference, wanted_speed
 from hilplant.jit import compiled
-from hilplant.models.records import STATE_INDEX, Parameters, State
-from hilplant.models.row import unpack, write
-from hilplant.signals import INPUT_INDEX, Inputs
+from hilplant.models.records import Parameters, State
+from hilplant.models.row import pack, unpack, write
+from hilplant.signals import INPUT_INDEX, WANTED, Inputs
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 #: The plant's inputs that a controller commands, by index.
@@ -21,10 +21,7 @@ ASIDE_NS = 50 * MILLISECOND_NS
 
 
 class Seat:
-    """A controller with its memory. Construction compiles it, so that no tick meets cold code.
-
-    `reference` is read at each tick and may be replaced between ticks.
-    """
+    """A controller with its memory. Construction compiles it, so that no tick meets cold code."""
 
     stopped = ""  # why it was stopped, as one of a user's may be
 
@@ -35,9 +32,9 @@ class Seat:
         self.memory = POWER_ON
         _decide(POWER_ON, Measured(0.0, 0.0, 0.0), 0.0, controller, tables)
 
-    def decide(self, now_s: float, measured: Measured) -> Command:
-        """Take one tick."""
-        wanted = self.reference(now_s)
+    def decide(self, now_s: float, measured: Measured, heard_rad_s: float = OWN) -> Command:
+        """Take one tick; a wanted speed that was heard goes before the reference."""
+        wanted = wanted_speed(self.reference, now_s, heard_rad_s)
         self.memory, command = _decide(self.memory, measured, wanted, self._controller, self._tables)
         return command
 
@@ -52,11 +49,11 @@ class LoopSeat(Seat):
     def __init__(self, controller: Controller, tables: Tables, reference: Reference, parameter_row: Any) -> None:
         """Sit down beside a plant with these packed parameters."""
         super().__init__(controller, tables, reference)
-        self._parameter_row, self._asked_ns = parameter_row, 0
-        plant = (np.zeros(len(STATE_INDEX)), parameter_row, np.zeros(len(INPUT_INDEX)))
+        self._asked_ns = 0
+        plant = (pack(State()), parameter_row, np.zeros(len(INPUT_INDEX)))
         _drive(POWER_ON, 0.0, controller, tables, plant)
 
-    def drive(self, now_ns: int, state_row: Any, input_row: Any) -> bool:
+    def drive(self, now_ns: int, state_row: Any, input_row: Any, parameter_row: Any) -> bool:
         """Take one tick on the loop's own rows; `input_row` gets the command. It is what ``Loop.control`` calls.
 
         While the loop is in its safe state it does not ask; after that the controller begins anew, as on the bus.
@@ -64,8 +61,8 @@ class LoopSeat(Seat):
         if now_ns - self._asked_ns > ASIDE_NS:
             self.forget()
         self._asked_ns = now_ns
-        wanted = self.reference(now_ns / SECOND_NS)
-        plant = (state_row, self._parameter_row, input_row)
+        wanted = wanted_speed(self.reference, now_ns / SECOND_NS, input_row[WANTED])
+        plant = (state_row, parameter_row, input_row)
         self.memory = _drive(self.memory, wanted, self._controller, self._tables, plant)
         return True
 

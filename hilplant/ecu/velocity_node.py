@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
+from hilplant.bench.ecu_side import EcuSide
 from hilplant.bus.codec import ReceivedMessage, SentMessage
 from hilplant.bus.frame import Frame
 from hilplant.bus.link import LinkSettings
@@ -11,14 +12,16 @@ from hilplant.bus.node import Node
 from hilplant.bus.transport import Transport
 from hilplant.control.own import OwnSeat
 from hilplant.control.records import Command, Measured
+from hilplant.control.reference import wanted_speed
 from hilplant.control.seat import Seat
 from hilplant.failure import Failure
 from hilplant.runtime.clock import Clock
-from hilplant.signals import INPUT_INDEX, INPUTS, PUBLISHED, PUBLISHED_INDEX
+from hilplant.signals import ECU_RX, ECU_RX_INDEX, INPUT_INDEX, INPUTS
 from hilplant.units import SECOND_NS
 
-_HEARD = tuple(PUBLISHED_INDEX[name] for name in ("crank_speed_rad_s", "current_a", "park_contact"))
-_SPEED, _CURRENT, _CONTACT = _HEARD
+_HEARD = tuple(ECU_RX_INDEX[name] for name in ("crank_speed_rad_s", "current_a", "measured_current_a", "park_contact"))
+_SPEED, _CURRENT, _MEASURED_CURRENT, _CONTACT = _HEARD
+_WANTED = ECU_RX_INDEX["reference_rad_s"]
 _ON, _FAST, _SUPPLY = (INPUT_INDEX[name] for name in ("relay_on", "relay_fast", "supply_v"))
 
 
@@ -36,26 +39,24 @@ class VelocityNode:
     """A CAN node with a velocity controller in it, polled once in each of the controller's periods.
 
     A period in which no frame with the speed has come is bridged: the controller is told that nothing was measured.
-    When frames stay away for longer than their timeout, the relays go off and the controller begins anew.
+    A current as its sensor shows it goes before the true one, a wanted speed that is heard before the seat's. When
+    frames stay away for longer than their timeout, the relays go off and the controller begins anew.
     """
 
-    def __init__(
-        self,
-        received: Sequence[ReceivedMessage],
-        sent: Sequence[SentMessage],
-        transport: Transport,
-        seat: Seat | OwnSeat,
-    ) -> None:
+    def __init__(self, side: EcuSide, transport: Transport, seat: Seat | OwnSeat) -> None:
         """Join the bus with the ECU's side of a bench's messages."""
-        heard = [message for message in received if set(_HEARD) & set(message.targets)]
-        commands = [message for message in sent if {_ON, _FAST, _SUPPLY} & set(message.sources)]
+        heard = [message for message in side.receive if set(_HEARD) & set(message.targets)]
+        commands = [message for message in side.send if {_ON, _FAST, _SUPPLY} & set(message.sources)]
         _demand(heard, commands)
+        shown = any(_MEASURED_CURRENT in message.targets for message in heard)
+        self._current = _MEASURED_CURRENT if shown else _CURRENT
         self.seat = seat
         self.report: Callable[[VelocityReport], None] | None = None
         self._commands = [signal.default for signal in INPUTS]
         self._speed_frames = {message.identifier for message in heard if _SPEED in message.targets}
         self._fresh = False
-        self._node = Node(heard, commands, transport, LinkSettings(), [math.nan] * len(PUBLISHED))
+        heard += side.reference
+        self._node = Node(heard, commands, transport, LinkSettings(), [math.nan] * len(ECU_RX))
         self._node.observe = self._observe
 
     def poll(self, now_ns: int) -> Command:
@@ -66,18 +67,18 @@ class VelocityNode:
         contact = values[_CONTACT]
         measured = Measured(
             values[_SPEED] if self._fresh else math.nan,
-            values[_CURRENT] if self._fresh else math.nan,
+            values[self._current] if self._fresh else math.nan,
             contact if math.isfinite(contact) else 0.0,
         )
         if self._node.lost:
             self.seat.forget()
             command = Command(0.0, 0.0)
         else:
-            command = self.seat.decide(now_s, measured)
+            command = self.seat.decide(now_s, measured, values[_WANTED])
         self._command(command)
         self._node.send(now_ns, self._commands)
         if self.report is not None:
-            wanted = self.seat.reference(now_s)
+            wanted = wanted_speed(self.seat.reference, now_s, values[_WANTED])
             self.report(VelocityReport(now_s, wanted, measured, command, self._node.lost))
         return command
 
@@ -117,7 +118,8 @@ def status_period_ns(sent: Sequence[SentMessage]) -> int:
 def _demand(heard: Sequence[ReceivedMessage], commands: Sequence[SentMessage]) -> None:
     targets = {target for message in heard for target in message.targets}
     sources = {source for message in commands for source in message.sources}
-    missing = [PUBLISHED[index].name for index in (_SPEED, _CURRENT) if index not in targets]
+    missing = [] if _SPEED in targets else [ECU_RX[_SPEED].name]
+    missing += [] if {_CURRENT, _MEASURED_CURRENT} & targets else [ECU_RX[_CURRENT].name]
     missing += [INPUTS[index].name for index in (_ON, _SUPPLY) if index not in sources]
     if missing:
         raise Failure(f"the bench's messages do not carry {', '.join(missing)}; a controller needs them")

@@ -58,7 +58,7 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     # 4 motor and load together to the next tick
     joint, play = join(motion, crank, load, train, state.play)
     after, memory = move(joint, load, train, state)
-    seen = read_current(motion.current, state.noise, actual.sensors)
+    seen = read_current(motion.current, angle * actual.motor.gear_ratio, state.noise, actual.sensors)
     outputs = measured(motion, crank, load, Seen(seen.current_a, contact.shown, memory.mode, state), train)
     # 5 slow states
     reached = within_turn(angle + after.turned / actual.motor.gear_ratio)

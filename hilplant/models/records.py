@@ -151,6 +151,8 @@ class Sensors(NamedTuple):
     current_noise_a: Annotated[float, quantity("A", "standard deviation of the measured current's noise")] = 0.0
     current_limit_a: Annotated[float, quantity("A", "where the measured current saturates; 0: nowhere")] = 0.0
     park_stuck: Annotated[float, quantity("", "park contact: 0 moves, 1 stuck open, 2 stuck closed")] = 0.0
+    current_ripple: Annotated[float, quantity("", "height of the commutator's ripple, as a part of the current")] = 0.0
+    ripples_a_turn: Annotated[float, quantity("", "ripples of the current in a turn of the motor shaft")] = 0.0
 
 
 #: What stands behind the parameters of a plant without networks.

@@ -22,14 +22,17 @@ class SensorReading(NamedTuple):
 
 
 @compiled
-def read_current(current_a: float, noise: float, sensors: Sensors) -> SensorReading:
-    """Return gain x current + offset + noise, limited to what the sensor can show.
+def read_current(current_a: float, motor_angle_rad: float, noise: float, sensors: Sensors) -> SensorReading:
+    """Return gain x current (1 + ripple) + offset + noise, limited to what the sensor can show.
 
-    The noise is normal (Box and Muller), a sample a tick, and the same in every run: its seed is a state.
+    The noise is normal (Box and Muller), a sample a tick, and the same in every run: its seed is a state. The ripple is
+    that of the commutator, a cosine over the angle of the motor shaft [rad]; of one that is quicker than half the ticks
+    its alias is seen, as by any sampling sensor without a filter.
     """
     if sensors.altered < 0.5:
         return SensorReading(current_a, noise)
-    measured = sensors.current_gain * current_a + sensors.current_offset_a
+    rippled = current_a * (1.0 + sensors.current_ripple * math.cos(sensors.ripples_a_turn * motor_angle_rad))
+    measured = sensors.current_gain * rippled + sensors.current_offset_a
     if sensors.current_noise_a > 0.0:
         first = noise * MULTIPLIER % MODULUS
         noise = first * MULTIPLIER % MODULUS

@@ -19,6 +19,13 @@ def thread_cpu_ns() -> int:
     return time.thread_time_ns()
 
 
+def thread_waits() -> int:
+    """Return how often this thread has given up its processor by itself, as to sleep; losing it does not count."""
+    import resource  # not everywhere
+
+    return resource.getrusage(getattr(resource, "RUSAGE_THREAD", resource.RUSAGE_SELF)).ru_nvcsw
+
+
 class WallClock:
     """The machine's monotonic clock."""
 

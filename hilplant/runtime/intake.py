@@ -9,7 +9,7 @@ from hilplant.runtime.commands import ChannelCommand
 from hilplant.runtime.held_faults import HeldFaults
 from hilplant.runtime.mailbox import Mailbox
 from hilplant.runtime.ownership import Ownership
-from hilplant.signals import INPUTS
+from hilplant.signals import INPUTS, WANTED
 
 #: Gives the commands that are due beside those of the mailbox, such as a scenario's: called with the time [ns].
 Source = Callable[[int], Sequence[ChannelCommand]]
@@ -18,7 +18,7 @@ Source = Callable[[int], Sequence[ChannelCommand]]
 class Intake:
     """Applies commands to the inputs and parameters of a loop, and answers each by an event.
 
-    `reference`, where there is a controller inside the loop, takes its wanted speed; `source` gives commands beside the
+    `controlled` says whether a controller inside the loop takes a wanted speed; `source` gives commands beside the
     mailbox.
     """
 
@@ -30,7 +30,7 @@ class Intake:
         tell: Callable[[ChannelCommand], None],
     ) -> None:
         """`tell` gets each answer."""
-        self.reference: Callable[[float], None] | None = None
+        self.controlled = False
         self.source: Source | None = None
         self._why = ""
         self.faults = faults
@@ -84,12 +84,9 @@ class Intake:
         return c.APPLIED
 
     def _refer(self, command: ChannelCommand, now_ns: int) -> int:
-        if self.reference is None:
+        if not self.controlled:
             return c.NO_CONTROLLER
-        if not math.isfinite(command.value):
-            return c.OUT_OF_RANGE
-        self.reference(command.value)
-        return c.APPLIED
+        return self._set(command._replace(element=WANTED), now_ns)
 
     def _alive(self, command: ChannelCommand, now_ns: int) -> int:
         self._ownership.alive(command.client, now_ns)

@@ -37,9 +37,10 @@ _GUARD = OUTPUT_INDEX["guard"]
 _DEGRADED_FOR_NS = SECOND_NS
 
 
-#: A controller inside the loop: called with time [ns], state row and input row, it writes its command to the last, and
-#: says whether it is sound. One that is not is not called again: the safe state is in force from then on.
-Control = Callable[[int, Floats, Floats], bool]
+#: A controller inside the loop: called with time [ns] and the rows of state, inputs and parameters as they are in this
+#: tick, it writes its command to the inputs, and says whether it is sound. One that is not is not called again: from
+#: then on the safe state is in force.
+Control = Callable[[int, Floats, Floats, Floats], bool]
 
 
 class PlantRows(Protocol):
@@ -171,12 +172,14 @@ class Loop:
         self._inputs[:] = self._node.values
         if self._was_safe:
             self._owners[:] = BUS
-        if not safe and self.control is not None:
-            self.control_stopped = not self.control(self._bus_ns, self._state, self._inputs)
-            if self.control_stopped:
-                self.control, mode = None, SAFE
         if self._ownership.active:
             self._ownership.impose(self._inputs)
+        if not safe and self.control is not None:
+            self.control_stopped = not self.control(self._bus_ns, self._state, self._inputs, self._parameters)
+            if self.control_stopped:
+                self.control, mode = None, SAFE
+            if self._ownership.active:
+                self._ownership.impose(self._inputs)
         self._was_safe = safe or self.control_stopped
         if self._was_safe:
             for index, value in self._plant.safe:

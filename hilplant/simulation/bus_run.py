@@ -104,7 +104,7 @@ class _Weather:
     def __init__(self, bench: Bench) -> None:
         self._supply, self._screen = INPUT_INDEX["supply_v"], INPUT_INDEX["screen"]
 
-    def __call__(self, bus_ns: int, _state: Floats, inputs: Floats) -> bool:
+    def __call__(self, bus_ns: int, _state: Floats, inputs: Floats, _parameters: Floats) -> bool:
         supply_v, screen = WEATHER[int(bus_ns / SECOND_NS // ROUND_S) % len(WEATHER)]
         inputs[self._supply], inputs[self._screen] = supply_v, screen
         return True

@@ -20,9 +20,6 @@ from hilplant.signals import INPUT_INDEX, INPUTS
 from hilplant.simulation.stimuli import GENERATORS, Generated, Shape
 from hilplant.units import SECOND_NS
 
-#: Name of the value by which a signal takes that of another.
-_SAME = "same"
-
 
 class _Ramp(Checked):
     ramp_to: Any
@@ -111,17 +108,18 @@ def _entry(
         if ramp_s and signal.kind != "real":
             raise ValueError(f"{signal.name} is a {signal.kind} and cannot follow a ramp; give it a value")
         value = signal_value(signal, written)
-        if ramp_s and _is_no_quantity(signal, value):
-            raise ValueError(f"{signal.name} cannot ramp to '{_SAME}'; ramp to a number from 0 on, then say '{_SAME}'")
+        name = _stands_for(signal, value)
+        if ramp_s and name:
+            raise ValueError(f"{signal.name} cannot ramp to '{name}'; ramp to a number from 0 on, then say '{name}'")
         return value, ramp_s, None
     except ValueError as error:
         reading.note(document, location, str(error))
         return None
 
 
-def _is_no_quantity(signal: Signal, value: float) -> bool:
-    """Say whether a value stands for that of another signal, which no ramp can lead to or from."""
-    return _SAME in dict(signal.names) and value < 0.0
+def _stands_for(signal: Signal, value: float) -> str:
+    """Return the name of a value that is no quantity, such as 'same', so that no ramp can lead to or from it."""
+    return next((name for name, named in signal.names if value < 0.0 and named < 0.0), "")
 
 
 def apply(column: Floats, entry: Entry, step_ns: int, signal: Signal) -> None:
@@ -132,8 +130,9 @@ def apply(column: Floats, entry: Entry, step_ns: int, signal: Signal) -> None:
     if entry.shape is not None:
         _follow_shape(column[first:], entry.shape, step_ns, (entry.place, signal))
         return
-    if ticks and _is_no_quantity(signal, column[first]):
-        text = f"{signal.name} is '{_SAME}' when its ramp at {entry.time_s:g} s begins; give it a value before"
+    name = _stands_for(signal, column[first])
+    if ticks and name:
+        text = f"{signal.name} is '{name}' when its ramp at {entry.time_s:g} s begins; give it a value before"
         raise Failure(": ".join(part for part in (entry.place, text) if part))
     ramp = np.linspace(column[first], entry.value, ticks, endpoint=False)[: len(column) - first]
     column[first:] = entry.value

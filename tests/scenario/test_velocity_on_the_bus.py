@@ -80,7 +80,7 @@ class Drive:
         controller = controller_named(name + ("_sensorless" if blind else ""), motor, PERIOD_NS / SECOND_NS)
         seat = Seat(controller, without_network(), lambda _: math.pi)
         side = BENCH.ecu_side()
-        self.node = VelocityNode(side.receive, side.send, self.cable.controller, seat)
+        self.node = VelocityNode(side, self.cable.controller, seat)
         self.loop = build_loop(BENCH, self.cable.plant, VirtualClock())
         self.loop._node.values[INPUT_INDEX["screen"]] = 1.0
         self.speeds: list[float] = []
@@ -146,9 +146,9 @@ def test_the_cascade_without_a_speed_sensor_is_refused_at_the_period_of_the_bus(
 def test_a_bench_that_does_not_tell_the_speed_is_refused():
     side = BENCH.ecu_side()
     seat = Seat(controller_named("pid", BENCH.parameters.motor, 0.01), without_network(), lambda _: 3.0)
-    deaf = [message for message in side.receive if message.name != "MotorStatus"]
+    deaf = replace(side, receive=tuple(each for each in side.receive if each.name != "MotorStatus"))
     with pytest.raises(Failure, match="do not carry crank_speed_rad_s, current_a; a controller needs them"):
-        VelocityNode(deaf, side.send, Cable(0, 0.0).controller, seat)
+        VelocityNode(deaf, Cable(0, 0.0).controller, seat)
     with pytest.raises(Failure, match="no message of the bench sends crank_speed_rad_s"):
         status_period_ns([message for message in BENCH.send if message.name != "MotorStatus"])
 

@@ -51,20 +51,24 @@ def joined() -> tuple[End, End]:
     return plant, controller
 
 
-def in_the_loop(name: str, reference: str, wet: float, seconds: float) -> tuple[np.ndarray, np.ndarray]:
+def in_the_loop(
+    name: str, reference: str, wet: float, seconds: float, budget_us: int | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Return speed of the crank and FAST relay of each tick."""
-    bench, seat = seated(BENCH, Inside(name, reference))
+    bench, seat = seated(BENCH, Inside(name, reference, budget_us))
     loop = build_loop(bench, joined()[0], VirtualClock())
     loop.control = seat.drive
     return ticked(loop, wet, seconds, lambda _: None)
 
 
-def on_the_bus(name: str, reference: str, wet: float, seconds: float) -> tuple[np.ndarray, np.ndarray]:
+def on_the_bus(
+    name: str, reference: str, wet: float, seconds: float, budget_us: int | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     period_ns = status_period_ns(BENCH.send)
-    choice = ControllerChoice(name, parse_reference(reference))
+    choice = ControllerChoice(name, parse_reference(reference), budget_us)
     seat, side = seat_on_bus(choice, Driven(BENCH.parameters.motor, period_ns / SECOND_NS)), BENCH.ecu_side()
     plant, controller = joined()
-    node = VelocityNode(side.receive, side.send, controller, seat)
+    node = VelocityNode(side, controller, seat)
     loop = build_loop(BENCH, plant, VirtualClock())
     polls = period_ns // MILLISECOND_NS
     return ticked(loop, wet, seconds, lambda tick: node.poll(tick * MILLISECOND_NS) if tick % polls == 1 else None)

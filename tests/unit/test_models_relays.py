@@ -45,27 +45,36 @@ def test_a_relay_called_back_on_its_way_moves_anew_from_the_contact_that_it_left
 
 
 def test_an_ideal_sensor_shows_the_current_and_leaves_the_noise_alone() -> None:
-    assert read_current(3.25, 7.0, Sensors()) == (3.25, 7.0)
+    assert read_current(3.25, 1.0, 7.0, Sensors()) == (3.25, 7.0)
 
 
 def test_gain_offset_and_limit_of_the_current_sensor() -> None:
     sensors = Sensors(altered=1.0, current_gain=1.1, current_offset_a=-0.5, current_limit_a=10.0)
-    assert read_current(4.0, 1.0, sensors).current_a == pytest.approx(3.9)
-    assert read_current(40.0, 1.0, sensors).current_a == 10.0
-    assert read_current(-40.0, 1.0, sensors).current_a == -10.0
+    assert read_current(4.0, 0.0, 1.0, sensors).current_a == pytest.approx(3.9)
+    assert read_current(40.0, 0.0, 1.0, sensors).current_a == 10.0
+    assert read_current(-40.0, 0.0, 1.0, sensors).current_a == -10.0
 
 
 def test_the_noise_is_normal_white_and_the_same_in_every_run() -> None:
     sensors, noise, first = Sensors(altered=1.0, current_noise_a=0.2), 1.0, []
     for _ in range(20_000):
-        reading = read_current(0.0, noise, sensors)
+        reading = read_current(0.0, 0.0, noise, sensors)
         noise = reading.noise
         first.append(reading.current_a)
     samples = np.array(first) / 0.2
     assert abs(samples.mean()) < 4.0 / math.sqrt(len(samples)) and samples.std() == pytest.approx(1.0, abs=0.02)
     assert np.mean(np.abs(samples) < 1.0) == pytest.approx(0.6827, abs=0.015)
     assert abs(np.mean(samples[1:] * samples[:-1])) < 0.03
-    assert first[0] == read_current(0.0, 1.0, sensors).current_a
+    assert first[0] == read_current(0.0, 0.0, 1.0, sensors).current_a
+
+
+def test_the_ripple_goes_with_the_current_and_comes_so_often_in_a_turn_of_the_motor() -> None:
+    sensors = Sensors(altered=1.0, current_ripple=0.05, ripples_a_turn=12.0)
+    turn = np.linspace(0.0, 2.0 * math.pi, 3600, endpoint=False)
+    shown = np.array([read_current(8.0, angle, 1.0, sensors).current_a for angle in turn])
+    assert (shown.min(), shown.mean(), shown.max()) == pytest.approx((7.6, 8.0, 8.4))
+    assert int(np.argmax(np.abs(np.fft.rfft(shown))[1:])) + 1 == 12
+    assert np.all([read_current(0.0, angle, 1.0, sensors).current_a == 0.0 for angle in turn[:50]])
 
 
 def test_a_stuck_park_contact() -> None:

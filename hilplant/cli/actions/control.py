@@ -26,7 +26,7 @@ def control_command(
     interface = bench.interface if channel is None else {**bench.interface, "channel": channel}
     period_ns = status_period_ns(bench.send)
     side, seat = bench.ecu_side(), seat_on_bus(choice, Driven(bench.parameters.motor, period_ns / SECOND_NS))
-    node = VelocityNode(side.receive, side.send, open_transport(interface), seat)
+    node = VelocityNode(side, open_transport(interface), seat)
     voice = Voice()
     node.report = _printer(voice)
     stop, clock = StopRequest(), WallClock()

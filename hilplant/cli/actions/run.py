@@ -108,18 +108,13 @@ def _judge(
     return judging(name, played.path, ring, loop_cpu)
 
 
-def _want(seat: "LoopSeat | OwnLoopSeat", speed_rad_s: float) -> None:
-    """Give a controller another wanted speed, for good."""
-    seat.reference = lambda _: speed_rad_s
-
-
 def _prepare(seat: "LoopSeat | OwnLoopSeat | None", loop: Loop) -> None:
     """Give the loop what is inside it."""
     if seat is None:
         return
     loop.control = seat.drive
     if loop.intake is not None:
-        loop.intake.reference = partial(_want, seat)
+        loop.intake.controlled = True
 
 
 def _play(scenario: Scenario, bench: Bench, stop: StopRequest, prepare: Callable[[Loop], None], loop: Loop) -> None:
