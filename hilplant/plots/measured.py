@@ -31,7 +31,7 @@ def plot_measurement(data: Measurement, out: str | PathLike[str]) -> None:
     middles, speeds = turn_speeds(data.park, data.time_s)
     speed.plot(middles, speeds, "o-", color=_GREEN, markersize=3)
     speed.set_ylabel("crank, mean of\neach turn [rad/s]")
-    speed.set_ylim(bottom=0.0)
+    speed.set_ylim(0.0, 1.1 * max(speeds, default=1.0))
     speed.set_xlabel("time [s]")
     figure.align_ylabels()
     figure.suptitle(f"{data.source}: {data.time_s[-1]:.4g} s, {1.0 / data.period_s:.4g} Hz", parse_math=False)
@@ -87,14 +87,12 @@ def plot_transfer_answers(found: Sequence[TransferAnswer], out: str | PathLike[s
     """Draw the plant's current and that of (5.7), a brush a panel, with their difference: Figure 5-7."""
     figure, panels = plain_figure((11, 7), 2, len(found), sharex=True)
     for column, each in zip(panels.T, found, strict=True):
-        column[0].plot(
-            each.time_s, each.plant_a, color=_BLUE, label="equations (3.30), (3.31), as the step solves them"
-        )
+        column[0].plot(each.time_s, each.plant_a, color=_BLUE, label="equations (3.30), (3.31)")
         column[0].plot(each.time_s, each.answer_a, color=_ORANGE, linestyle="--", label="transfer function (5.7)")
         column[0].set_title(f"{each.brush} brush", fontsize=10)
         column[0].set_ylabel("current [A]")
         column[1].plot(each.time_s, each.answer_a - each.plant_a, color=_RED)
         column[1].set(ylabel="difference [A]", xlabel="time [s]")
-    panels[0, 0].legend(frameon=False, fontsize=8)
+    panels[0, 0].legend(loc="center", frameon=False, fontsize=8)
     figure.suptitle(title, parse_math=False)
     save(figure, out, 110)

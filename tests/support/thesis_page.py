@@ -6,16 +6,17 @@ from typing import NamedTuple
 from hilplant.resources import shipped_root
 
 PAGE = shipped_root() / "docs" / "thesis.md"
-#: In a table's cell; `(long)` behind it where no test runs it.
-_COMMAND = re.compile(r"`(hilplant [^`]+)`( \(long\))?")
+#: In a table's cell; behind it `(long)` where no test runs it, `(refused)` where it is to end with exit code 1.
+_COMMAND = re.compile(r"`(hilplant [^`]+)`(?: \((long|refused)\))?")
 
 
 class Row(NamedTuple):
-    """One item of the thesis: commands with whether they are long, and its state."""
+    """One item of the thesis: its commands, each with what stands behind it, what comes out, and its state."""
 
     number: int
     item: str
-    commands: list[tuple[str, bool]]
+    commands: list[tuple[str, str]]
+    here: str
     state: str
 
 
@@ -24,8 +25,7 @@ def _rows(text: str) -> list[Row]:
     for line in text.splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")] if line.startswith("| ") else []
         if len(cells) == 5 and cells[0].isdigit():
-            commands = [(command, bool(mark)) for command, mark in _COMMAND.findall(cells[2])]
-            found.append(Row(int(cells[0]), cells[1], commands, cells[4]))
+            found.append(Row(int(cells[0]), cells[1], _COMMAND.findall(cells[2]), cells[3], cells[4]))
     return found
 
 
