@@ -58,7 +58,14 @@ def observed(candump: Any, name: str) -> list[tuple[float, dict[str, Any]]]:
 
 
 def last(candump: Any, name: str) -> dict[str, Any]:
-    return observed(candump, name)[-1][1]
+    """Return the signals of the newest frame of a message."""
+    message = DATABASE.get_message_by_name(name)
+    for line in reversed(list(candump.lines)):
+        match = LINE.match(line)
+        if match and int(match[2], 16) == message.frame_id:
+            signals: dict[str, Any] = message.decode(bytes.fromhex(match[3]))
+            return signals
+    raise AssertionError(f"no {name} was seen")
 
 
 def wait_until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
@@ -69,8 +76,8 @@ def wait_until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
 
 
 def row_before_end(recording: Path, distance: int) -> dict[str, Any]:
-    import pyarrow as pa
+    from hilplant.recording.reader import read_recording
 
-    table = pa.ipc.open_stream(str(recording)).read_all()
+    table = read_recording(recording).table()
     row: dict[str, Any] = table.slice(len(table) - 1 - distance).to_pylist()[0]
     return row
