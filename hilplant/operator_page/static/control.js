@@ -22,7 +22,7 @@ export class Control {
     const { kind, names, choices, unit, minimum, maximum } = this.signal;
     if (kind === "flag") return this.buttons([[0, "off"], [1, "on"]]);
     if (kind === "choice") return this.chosen(choices.map((name, i) => [i, name]));
-    if (names.length) return this.chosen(names.map(([name, value]) => [value, name]));
+    if (names.length > 1) return this.chosen(names.map(([name, value]) => [value, name]));
     const number = element("input", { type: "number", step: "any", min: minimum, max: maximum, "aria-label": this.signal.name });
     number.addEventListener("change", () => this.request(number.valueAsNumber));
     number.addEventListener("keydown", (event) => { if (event.key === "Enter") this.request(number.valueAsNumber); });
