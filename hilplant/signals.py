@@ -17,7 +17,7 @@ SCREENS = (("dry", 0.0), ("tacky", 0.5), ("wet", 1.0))
 #: The same for one side, where a number below 0 stands for what the whole screen has.
 SIDE_SCREENS = (("same", -1.0), *SCREENS)
 #: A wanted speed below 0 stands for what the controller was started with.
-OWN = (("own", -1.0),)
+REFERENCES = (("own", -1.0),)
 #: Which model gives the load's torque or moves the motor: physical (there is no network, or it has not been asked),
 #: network; or the physical one because the motor stands, or because the network was not trained for what is asked.
 ACTIVE_MODELS = ("physical", "network", "standstill", "outside")
@@ -74,7 +74,13 @@ class Inputs(NamedTuple):
     washer_pump: Annotated[float, flag("washer pump: 1 sprays the screen, where water is modelled", guarded=0.0)] = 0.0
     reference_rad_s: Annotated[
         float,
-        real("rad/s", -1.0, 20.0, "wanted crank speed of a controller; below 0 it is the controller's own", names=OWN),
+        real(
+            "rad/s",
+            -1.0,
+            20.0,
+            "wanted crank speed of a controller; below 0 it is the controller's own",
+            names=REFERENCES,
+        ),
     ] = -1.0
 
 

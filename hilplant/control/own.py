@@ -16,12 +16,13 @@ from hilplant.arrays import Floats
 from hilplant.control.closed_loop import Commanded, measure
 from hilplant.control.records import Command, Measured
 from hilplant.control.reference import OWN, Reference, wanted_speed
+from hilplant.control.seat import ASIDE_NS
 from hilplant.failure import Failure
 from hilplant.jit import compiled
 from hilplant.models.records import Motor, Parameters, State
 from hilplant.models.row import pack, unpack
 from hilplant.signals import INPUT_INDEX, WANTED
-from hilplant.units import MICROSECOND_NS, MILLISECOND_NS, SECOND_NS
+from hilplant.units import MICROSECOND_NS, SECOND_NS
 
 #: Decides: wanted crank speed [rad/s] and what is measured -> supply voltage [V], and whether by the fast brush.
 Decide = Callable[[float, Measured], tuple[float, bool]]
@@ -31,8 +32,6 @@ Maker = Callable[[Motor, float], Decide]
 #: Voltages that a controller may ask for [V]; others are limited to these.
 LOWEST_V, HIGHEST_V = 0.0, 20.0
 OFF = Command(0.0, 0.0)
-#: A controller in the loop that was not asked for longer than this has been put aside: it begins anew.
-ASIDE_NS = 50 * MILLISECOND_NS
 #: Time [s] after which a call that is not back is looked at: one that sleeps, or is over its budget, is broken off.
 #: One that only has no processor goes on.
 LONGEST_CALL_S = 0.05

@@ -3,6 +3,13 @@
 import time
 from typing import Protocol
 
+try:
+    import resource
+except ImportError:  # not everywhere; no wait is counted there
+    resource = None  # type: ignore[assignment]
+else:
+    _OF_THREAD = getattr(resource, "RUSAGE_THREAD", resource.RUSAGE_SELF)
+
 
 class Clock(Protocol):
     """What the loop asks of time, in integer nanoseconds from an arbitrary origin."""
@@ -21,9 +28,7 @@ def thread_cpu_ns() -> int:
 
 def thread_waits() -> int:
     """Return how often this thread has given up its processor by itself, as to sleep; losing it does not count."""
-    import resource  # not everywhere
-
-    return resource.getrusage(getattr(resource, "RUSAGE_THREAD", resource.RUSAGE_SELF)).ru_nvcsw
+    return resource.getrusage(_OF_THREAD).ru_nvcsw if resource is not None else 0
 
 
 class WallClock:

@@ -43,13 +43,18 @@ def disturb(run: Run) -> None:
     run.tick(30, command_every=20)
 
 
-def test_a_recorded_run_with_commands_replays_bit_for_bit_and_keeps_them(run: Run, tmp_path: Path) -> None:
+def record_disturbed(run: Run, folder: Path) -> Path:
     run.ring.read_rows()
-    writer = record(run, path := tmp_path / "run.hilrec", description_now(run.bench))
+    writer = record(run, path := folder / "run.hilrec", description_now(run.bench))
     disturb(run)
     writer.take(run.ring)
     writer.write(last=True)
     writer.close()
+    return path
+
+
+def test_a_recorded_run_with_commands_replays_bit_for_bit_and_keeps_them(run: Run, tmp_path: Path) -> None:
+    path = record_disturbed(run, tmp_path)
     assert str(replay(path)) == f"equal: all {len(OUTPUTS)} outputs of 90 ticks, bit for bit"
     table = read_recording(path).table(["tick", "events"]).to_pylist()
     told = {row["tick"]: [(e["kind"], e["name"], e["value"], e["owner"]) for e in row["events"]] for row in table}
@@ -61,12 +66,7 @@ def test_a_recorded_run_with_commands_replays_bit_for_bit_and_keeps_them(run: Ru
 def test_a_replay_that_ignores_the_commands_would_differ(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run.ring.read_rows()
-    writer = record(run, path := tmp_path / "run.hilrec", description_now(run.bench))
-    disturb(run)
-    writer.take(run.ring)
-    writer.write(last=True)
-    writer.close()
+    path = record_disturbed(run, tmp_path)
     monkeypatch.setattr("hilplant.recording.replay.parameter_changes", lambda rows: [])
     assert not replay(path).equal
 

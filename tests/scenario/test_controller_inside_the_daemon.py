@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.wire import Wire
 from typer.testing import CliRunner
 
 from hilplant.bench import load_bench
 from hilplant.bus.frame import Frame
-from hilplant.bus.transport import SendResult
 from hilplant.cli.main import app
 from hilplant.control.reference import parse_reference
 from hilplant.ecu.loop_controller import Inside, seated
@@ -19,31 +19,6 @@ from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.loop import Loop
 from hilplant.runtime.server import build_loop
 from hilplant.units import MILLISECOND_NS
-
-
-class Wire:
-    """An interface on which frames are laid by hand."""
-
-    up, missed = True, 0
-
-    def __init__(self) -> None:
-        self.coming: list[Frame] = []
-
-    def receive(self, limit: int) -> list[Frame]:
-        taken, self.coming = self.coming[:limit], self.coming[limit:]
-        return taken
-
-    def send(self, frame: Frame) -> SendResult:
-        return SendResult.SENT
-
-    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
-        return [(frame, 0) for frame in self.receive(limit)]
-
-    def reopen(self) -> bool:
-        return True
-
-    def close(self) -> None:
-        self.up = False
 
 
 def ticked(name: str, reference: str, bench_name: str = "default") -> tuple[Loop, Wire, float]:
@@ -66,7 +41,7 @@ def speeds(loop: Loop, gear_ratio: float, ticks: range) -> np.ndarray:
 def test_it_needs_no_frames_and_does_not_mind_those_of_a_relay_ecu():
     loop, wire, gear_ratio = ticked("cascade", "0:3.14,1:2")
     first = speeds(loop, gear_ratio, range(1000))
-    wire.coming = [Frame(0x120, bytes(8), False, False)] * 3
+    wire.arriving = [Frame(0x120, bytes(8), False, False)] * 3
     second = speeds(loop, gear_ratio, range(1000, 3000))
     assert first[100:] == pytest.approx(3.14, abs=0.1)
     assert second[100:] == pytest.approx(2.0, abs=0.1)

@@ -9,6 +9,7 @@ from collections import deque
 
 import cantools
 import pytest
+from support.wire import Wire
 
 from hilplant.bench import load_bench
 from hilplant.bus.frame import Frame
@@ -48,12 +49,11 @@ class Cable:
         self.plant.other, self.ecu.other = self.ecu, self.plant
 
 
-class End:
+class End(Wire):
     """One end: a transport."""
 
-    up, missed = True, 0
-
     def __init__(self, cable: Cable) -> None:
+        super().__init__()
         self.cable, self.other = cable, self
         self.coming: deque[tuple[int, Frame]] = deque()
 
@@ -69,15 +69,6 @@ class End:
         else:
             self.other.coming.append((self.cable.now_ns + self.cable.delay_ns, frame))
         return SendResult.SENT
-
-    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
-        return [(frame, 0) for frame in self.receive(limit)]
-
-    def reopen(self) -> bool:
-        return True
-
-    def close(self) -> None:
-        pass
 
 
 class Bus:

@@ -4,6 +4,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from support.wire import Wire
 
 from hilplant.bench import load_bench
 from hilplant.bus.frame import Frame
@@ -18,30 +19,16 @@ NETWORK, STANDSTILL, OUTSIDE = (ACTIVE_MODELS.index(name) for name in ("network"
 STEP_NS = 1_000_000
 
 
-class Sent:
+class Sent(Wire):
     """An interface that keeps what is sent, with the tick, and gives what is put into it."""
 
-    missed, up = 0, True
-
     def __init__(self) -> None:
-        self.now, self.arriving, self.frames = 0, [], []
-
-    def receive(self, limit: int) -> list[Frame]:
-        arrived, self.arriving = self.arriving[:limit], self.arriving[limit:]
-        return arrived
+        super().__init__()
+        self.now, self.frames = 0, []
 
     def send(self, frame: Frame) -> SendResult:
         self.frames.append((self.now, frame))
         return SendResult.SENT
-
-    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
-        return [(frame, 0) for frame in self.receive(limit)]
-
-    def reopen(self) -> bool:
-        return True
-
-    def close(self) -> None:
-        return None
 
 
 def run(name: str) -> list[tuple[int, Frame]]:

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.wire import Wire
 
 from hilplant.bench import load_bench
 from hilplant.bus.frame import Frame
@@ -42,11 +43,11 @@ class Cable:
         self.plant.other, self.controller.other = self.controller, self.plant
 
 
-class End:
-    up, missed = True, 0
+class End(Wire):
     other: "End"
 
     def __init__(self, cable: Cable) -> None:
+        super().__init__()
         self.cable = cable
         self.under_way: deque[tuple[int, Frame]] = deque()
 
@@ -60,15 +61,6 @@ class End:
         if not self.cable.cut and self.cable.chance.random() >= self.cable.loss:
             self.other.under_way.append((self.cable.now + self.cable.delay, frame))
         return SendResult.SENT
-
-    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
-        return [(frame, 0) for frame in self.receive(limit)]
-
-    def reopen(self) -> bool:
-        return True
-
-    def close(self) -> None:
-        self.up = False
 
 
 class Drive:

@@ -16,6 +16,8 @@ LINE = re.compile(r"\((\d+\.\d+)\) \S+ ([0-9A-F]{3})#([0-9A-F]*)$")
 SLOW, FAST, OFF = "120#0100", "120#0300", "120#0000"
 PATIENCE_S = 40.0
 START_PATIENCE_S = 150.0
+#: The default bench where time is soft.
+SOFT_TIME = ROOT / "tests" / "vcan" / "soft_time.yaml"
 HILPLANT = (sys.executable, "-m", "hilplant")
 #: Sends a frame by cansend every 0.1 s, and at once each one that comes by standard input; ends with it.
 COMMANDER = """

@@ -1,11 +1,11 @@
 """The ECU on a bus that a test holds in its hands."""
 
 import cantools
+from support.wire import Wire
 
 from hilplant.bench.ecu_side import EcuSide
 from hilplant.bus.codec import ReceivedMessage, SentMessage, SignalMapping, Timing, received_message, sent_message
 from hilplant.bus.frame import Frame
-from hilplant.bus.transport import SendResult
 from hilplant.ecu.node import EcuNode
 from hilplant.ecu.vocabulary import Master, RelaySettings, Stalk
 from hilplant.signals import ECU_FAULTS, ECU_RX, ECU_STATES, ECU_TX
@@ -65,35 +65,6 @@ def side(stalk_timeout_ns: int = 0) -> EcuSide:
     stalk = received("Stalk", stalk_timeout_ns, Stage="master_input", Flick="flick_wipe")
     told = sent("Told", State="ecu_state", Fault="ecu_fault")
     return EcuSide((park, motor), (relays, sent("Supply", Volts="supply_v")), (stalk,), (told,))
-
-
-class Wire:
-    """An interface whose other end is the test."""
-
-    up = True
-    missed = 0
-
-    def __init__(self) -> None:
-        self.arriving: list[Frame] = []
-        self.sent: list[Frame] = []
-        self.closed = False
-
-    def receive(self, limit: int) -> list[Frame]:
-        arrived, self.arriving = self.arriving[:limit], self.arriving[limit:]
-        return arrived
-
-    def send(self, frame: Frame) -> SendResult:
-        self.sent.append(frame)
-        return SendResult.SENT
-
-    def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
-        return [(frame, 0) for frame in self.receive(limit)]
-
-    def reopen(self) -> bool:
-        return True
-
-    def close(self) -> None:
-        self.closed = True
 
 
 class Seat:

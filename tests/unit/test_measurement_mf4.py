@@ -10,6 +10,8 @@ import cantools
 import numpy as np
 import pyarrow as pa
 import pytest
+from support import strangers_logs
+from support.strangers_logs import AMPERES, COUNT, TIME_S, VOLTS
 
 from hilplant.failure import Failure
 from hilplant.measurements import mf4
@@ -21,19 +23,8 @@ from hilplant.recording.mf4_frames import FrameGroups
 
 pytest.importorskip("asammdf")
 
-DBC = """VERSION ""
-BU_: RIG
-BO_ 256 Motor: 4 RIG
- SG_ Amps : 0|16@1- (0.01,0) [-300|300] "A" RIG
- SG_ Volts : 16|16@1+ (0.001,0) [0|40] "V" RIG
-BO_ 2147483905 Switch: 1 RIG
- SG_ Park : 0|1@1+ (1,0) [0|1] "" RIG
-VAL_ 2147483905 Park 1 "closed" 0 "open" ;
-"""
-COUNT = 1500
-TIME_S = np.arange(COUNT) * 1e-3
-VOLTS = np.where(TIME_S < 0.5, 0.0, 12.0)
-AMPERES = np.round(np.where(TIME_S < 0.5, 0.0, 2.0 + 0.5 * np.sin(7.0 * TIME_S)), 2)
+#: The switch has an extended identifier here.
+DBC = strangers_logs.DBC.replace("257", "2147483905")
 PARK = ((TIME_S % 0.5) < 0.05).astype(int)
 
 

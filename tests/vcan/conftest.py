@@ -10,8 +10,10 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
+from support.can_utils import HILPLANT, SOFT_TIME, START_PATIENCE_S, Commander
 
 INTERFACE = "vcan0"
 PATIENCE_S = 10.0
@@ -172,3 +174,18 @@ def cansend(vcan: str) -> Callable[[str], None]:
         subprocess.run(["cansend", vcan, frame], check=True)
 
     return send
+
+
+@pytest.fixture
+def commander(vcan: str) -> Iterator[Commander]:
+    running = Commander(vcan)
+    yield running
+    running.stop()
+
+
+@pytest.fixture
+def server(spawn: Callable[..., Any], vcan: str, tmp_path: Path) -> Any:
+    """The daemon on the default bench, recording; it has sent its first frames."""
+    daemon = spawn(*HILPLANT, "run", SOFT_TIME, "--record", tmp_path / "run.hilrec")
+    daemon.wait_for("serves on", START_PATIENCE_S)
+    return daemon

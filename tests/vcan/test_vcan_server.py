@@ -7,7 +7,7 @@ import math
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,6 @@ from support.can_utils import (
     OFF,
     PATIENCE_S,
     SLOW,
-    START_PATIENCE_S,
     Commander,
     last,
     observed,
@@ -27,7 +26,6 @@ from support.can_utils import (
 )
 
 ROOT = Path(__file__).parents[2]
-SOFT_TIME = Path(__file__).with_name("soft_time.yaml")
 #: Off at the edge of the park switch, as an ECU does it: slow until the contact has opened and closed again.
 PARK = """
 cangen "$0" -g 50 -I 120 -L 2 -D 0100 & slow=$!
@@ -38,21 +36,6 @@ stdbuf -oL candump -L "$0,201:7FF" | while read -r line; do
     esac
 done
 """
-
-
-@pytest.fixture
-def commander(vcan: str) -> Iterator[Commander]:
-    running = Commander(vcan)
-    yield running
-    running.stop()
-
-
-@pytest.fixture
-def server(spawn: Callable[..., Any], vcan: str, tmp_path: Path) -> Any:
-    """The daemon on the default bench, recording; it has sent its first frames."""
-    daemon = spawn(*HILPLANT, "run", SOFT_TIME, "--record", tmp_path / "run.hilrec")
-    daemon.wait_for("serves on", START_PATIENCE_S)
-    return daemon
 
 
 def test_can_utils_alone_drive_the_wiper_slow_fast_and_park_it(
