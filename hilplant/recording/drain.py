@@ -23,8 +23,10 @@ _WRITE_EVERY_S = 0.5
 _SYNC_EVERY_S = 1.0
 
 
-def record(ring: Ring, writer: RecordingWriter) -> None:
+def record(ring: Ring, writer: RecordingWriter, lost_before: int) -> None:
     """Write until the daemon has closed the ring or has died, then what is left.
+
+    What the ring has lost beyond `lost_before` is missing in this recording.
 
     Raises
     ------
@@ -32,7 +34,7 @@ def record(ring: Ring, writer: RecordingWriter) -> None:
         When the file is no longer what it was, or the disk takes no more; the ring tells it then.
     """
     written_s = synced_s = time.monotonic()
-    ended, lost_before = False, ring.lost
+    ended = False
     try:
         while not ended:
             ready, _, _ = select.select([sys.stdin], [], [], _LOOK_EVERY_S)
@@ -71,12 +73,13 @@ def main(ring_name: str, path: str, loop_cpu: str) -> int:
     try:
         with contextlib.closing(Ring.attach(ring_name)) as ring:
             rotation = Rotation.from_json(order["rotation"])
+            lost_before = ring.lost  # before this process is the ring's reader: until then nothing is lost
             metadata = _of_now(ring, order["metadata"]) if order["late"] else order["metadata"]
             writer = RecordingWriter(Path(path), metadata, ring.row_width, rotation)
             writer.take(ring)
             started = _say_ready(writer)
             if started:
-                record(ring, writer)
+                record(ring, writer, lost_before)
     except OSError as error:
         cause = error.strerror or error
         if started:

@@ -29,13 +29,13 @@ _EXPORTED = (".mf4", ".blf", ".asc", ".csv", ".parquet", ".mcap")
 class Recorder:
     """A recorder at work. If it dies too early, one line on standard error says so and the run goes on."""
 
-    def __init__(self, child: subprocess.Popen[bytes], ring: Ring, path: Path) -> None:
-        """Watch over `child` from a thread that sleeps until it ends."""
+    def __init__(self, child: subprocess.Popen[bytes], ring: Ring, path: Path, lost_before: int) -> None:
+        """Watch over `child` from a thread that sleeps until it ends; `lost_before`: what the ring had lost by then."""
         self._child = child
         self._ring = ring
         self._path = path
         self._ending = False
-        self._lost_before = ring.lost
+        self._lost_before = lost_before
         self._watch = threading.Thread(target=self._wait, daemon=True, name="recorder watch")
         self._watch.start()
 
@@ -145,6 +145,7 @@ def _start(
     path = _free(path, rotation)
     order = {"metadata": metadata, "rotation": asdict(rotation), "late": late}
     command = [sys.executable, "-m", "hilplant.recording.drain", ring.name, str(path)]
+    lost_before = ring.lost
     child = subprocess.Popen(
         [*command, "" if loop_cpu is None else str(loop_cpu)],
         stdin=subprocess.PIPE,
@@ -165,7 +166,7 @@ def _start(
         child.communicate()
         cause = f"not within {_START_TIMEOUT_S:g} s" if answer is None else _ended(child.returncode)
         raise Failure(answer or f"{path}: the recorder did not start, {cause}")
-    return Recorder(child, ring, path)
+    return Recorder(child, ring, path, lost_before)
 
 
 def _word(bench: str) -> str:
