@@ -1,5 +1,6 @@
 """The modelling page opened in a browser for a test, and what a user does there."""
 
+import itertools
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -38,12 +39,11 @@ def enter(page: Page, name: str, value: str) -> None:
 
 
 def put_point(page: Page, table: str, letter: str, point: tuple[float, float]) -> None:
-    """Type a point into a table."""
-    for axis, value in enumerate(point):
-        cell = f'table[data-at="{table}"] tr[data-point="{letter}"] input[data-axis="{axis}"]'
-        if float(page.input_value(cell)) == value:
-            continue
-        with page.expect_response(lambda answer: answer.url.endswith("/api/edit")):
+    """Type a point into a table, one cell right after the other, and wait until the server has taken all."""
+    cells = [f'table[data-at="{table}"] tr[data-point="{letter}"] input[data-axis="{axis}"]' for axis in range(2)]
+    new = [(cell, value) for cell, value in zip(cells, point, strict=True) if float(page.input_value(cell)) != value]
+    answers = itertools.count(1)
+    with page.expect_response(lambda answer: answer.url.endswith("/api/edit") and next(answers) == len(new)):
+        for cell, value in new:
             page.fill(cell, repr(value))
             page.press(cell, "Tab")
-        page.wait_for_timeout(50)

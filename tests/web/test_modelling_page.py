@@ -99,6 +99,14 @@ def test_a_point_that_breaks_grashof_marks_its_field_with_the_constraint(page: P
         expect(page.locator("#validity [role=status]")).to_have_text("The configuration is possible.")
 
 
+def test_coordinates_that_are_typed_quickly_are_all_taken(page: Page, tmp_path: Path) -> None:
+    with modelling(page, tmp_path) as session:
+        show(page, "linkages")
+        for letter, point in {"A": (0.04, 0.005), "E": (0.2331, -0.0171)}.items():
+            put_point(page, POINTS, letter, point)
+            assert checked(session.model).values["plant"]["linkage"]["points_m"][letter][:2] == list(point)
+
+
 def test_a_pivot_is_dragged_in_the_drawing(page: Page, tmp_path: Path) -> None:
     with modelling(page, tmp_path) as session:
         show(page, "linkages")

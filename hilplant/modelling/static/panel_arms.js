@@ -27,12 +27,13 @@ function kind(at, title) {
   const select = choice(KINDS.map(([name, text]) => [name, text]), { "aria-label": `${title} arm type` });
   const refresh = () => { select.value = store.get([...at, "kind"]) || ""; };
   select.addEventListener("change", () => {
-    const now = store.get(at);
-    const letters = KINDS.find(([name]) => name === select.value)[2];
-    const last = Object.values(now.points_m).at(-1);
-    const points = Object.fromEntries([...letters].map((letter, index) => [letter, now.points_m[letter] || between(now.points_m, last, index, letters.length)]));
-    points[letters.at(-1)] = last;
-    store.edit(at, { ...now, kind: select.value, points_m: points });
+    const [chosen, , letters] = KINDS.find(([name]) => name === select.value);
+    store.amend(at, (now) => {
+      const last = Object.values(now.points_m).at(-1);
+      const points = Object.fromEntries([...letters].map((letter, index) => [letter, now.points_m[letter] || between(now.points_m, last, index, letters.length)]));
+      points[letters.at(-1)] = last;
+      return { ...now, kind: chosen, points_m: points };
+    });
   });
   listen(select, refresh);
   refresh();

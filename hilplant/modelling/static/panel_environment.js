@@ -24,8 +24,7 @@ export function environmentPanel() {
 
 function air() {
   const buttons = Object.entries(AIR).map(([name, set]) => element("button", { onclick: () => {
-    const blades = store.get(["plant", "blades"]);
-    if (blades) store.edit(["plant", "blades"], { left: { ...blades.left, ...set }, right: { ...blades.right, ...set } });
+    if (store.get(["plant", "blades"])) store.amend(["plant", "blades"], ({ left, right }) => ({ left: { ...left, ...set }, right: { ...right, ...set } }));
   } }, name));
   const sides = ["left", "right"].map((side) => {
     const at = ["plant", "blades", side];

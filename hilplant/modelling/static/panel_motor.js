@@ -53,8 +53,8 @@ function motorType() {
   const select = choice(TYPES, { "aria-label": "motor type" });
   const refresh = () => { select.value = store.get([...SWITCH, "circuit"]) || "digital"; };
   select.addEventListener("change", () => {
-    const { reverse_angle_deg: back, ...rest } = store.get(SWITCH);
-    store.edit(SWITCH, { ...rest, circuit: select.value, ...(select.value === "depressed" ? { reverse_angle_deg: back ?? 11.46 } : {}) });
+    const circuit = select.value;
+    store.amend(SWITCH, ({ reverse_angle_deg: back, ...rest }) => ({ ...rest, circuit, ...(circuit === "depressed" ? { reverse_angle_deg: back ?? 11.46 } : {}) }));
   });
   listen(select, refresh);
   refresh();

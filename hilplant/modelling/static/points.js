@@ -31,10 +31,8 @@ function row(location, letter) {
         store.say(`${letter}: '${input.value}' is no number`, true);
         return;
       }
-      const point = [...store.get([...location, letter])];
-      point[axis] = value;
       input.blur();
-      store.edit([...location, letter], point);
+      store.amend([...location, letter], (point) => Object.assign([...point], { [axis]: value }));
     });
     return element("td", {}, input);
   });

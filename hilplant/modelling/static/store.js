@@ -21,6 +21,10 @@ class Store extends EventTarget {
 
   // Ask for a change after those that are under way: each is made to the version that the one before gave.
   change(path, body = {}) {
+    return this.after(path, () => body);
+  }
+
+  after(path, body) {
     this.done = this.done.then(() => this.send(path, body));
     return this.done;
   }
@@ -28,7 +32,7 @@ class Store extends EventTarget {
   // What the server refuses is said, and the widgets show what holds.
   async send(path, body) {
     try {
-      this.take(await api(path, { version: this.state.version, ...body }));
+      this.take(await api(path, { version: this.state.version, ...body() }));
       this.say("");
       return true;
     } catch (error) {
@@ -40,6 +44,11 @@ class Store extends EventTarget {
 
   edit(location, value) {
     return this.change("edit", { location, value });
+  }
+
+  // Edit a part of a value: `made` is given the value as the changes under way have left it, and returns the new one.
+  amend(location, made) {
+    return this.after("edit", () => ({ location, value: made(this.get(location)) }));
   }
 
   say(text, wrong = false) {

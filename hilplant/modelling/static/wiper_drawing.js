@@ -109,9 +109,9 @@ export class WiperDrawing {
       circle.addEventListener("pointerup", (event) => {
         circle.removeEventListener("pointermove", move);
         const [x, y] = this.at(event);
-        const point = [...store.get([...POINTS, letter])];
+        const point = store.get([...POINTS, letter]);
         if (Math.hypot(point[0] - x, point[1] - y) < 1e-4) return;
-        store.edit([...POINTS, letter], [x, y, ...point.slice(2)]);
+        store.amend([...POINTS, letter], ([, , ...rest]) => [x, y, ...rest]);
       }, { once: true });
     });
   }
