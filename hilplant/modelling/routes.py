@@ -5,7 +5,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import anyio.to_thread
 from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
@@ -17,6 +16,7 @@ from hilplant.modelling.long_work import plain
 from hilplant.modelling.opening import with_library_part
 from hilplant.modelling.recordings import kept
 from hilplant.modelling.session import ModellingSession
+from hilplant.web.threads import in_thread
 
 Asked = dict[str, Any]
 Handler = Callable[[Asked], Any]
@@ -72,7 +72,7 @@ def _asked(how: Handler) -> Callable[[Request], Any]:
             asked = json.loads(body) if body else {}
             if not isinstance(asked, dict):
                 raise Failure("a request is an object")
-            return JSONResponse(plain(await anyio.to_thread.run_sync(how, asked)))
+            return JSONResponse(plain(await in_thread(how, asked)))
         except Failure as error:
             return PlainTextResponse(str(error), 422)
         except (KeyError, TypeError, ValueError) as error:
@@ -84,7 +84,7 @@ def _asked(how: Handler) -> Callable[[Request], Any]:
 def _file(how: Callable[[Any], tuple[str, bytes]]) -> Callable[[Request], Any]:
     async def answer(request: Request) -> Response:
         try:
-            name, content = await anyio.to_thread.run_sync(how, request.query_params)
+            name, content = await in_thread(how, request.query_params)
         except (Failure, KeyError) as error:
             return PlainTextResponse(str(error), 404)
         head = {"content-disposition": f'attachment; filename="{name}"'}

@@ -1,5 +1,7 @@
 """A page's files, its routes under /api and its socket -> one ASGI application that lets only its own users in."""
 
+import asyncio
+import contextlib
 from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -67,7 +69,11 @@ class Guarded:
         status, reason = self._verdict(scope, headers)
         if status == 0:
             limited = _limited(receive, self._access.limits.body_bytes) if scope["type"] == "http" else receive
-            await self._inner(scope, limited, _with_headers(send))
+            try:
+                await self._inner(scope, limited, _with_headers(send))
+            except asyncio.CancelledError:  # the server ends, and waits for no answer
+                with contextlib.suppress(RuntimeError):  # a part of the answer was sent
+                    await PlainTextResponse("the server has ended\n", 503)(scope, receive, send)
             return
         self._access.refuse(reason)
         if scope["type"] == "websocket":

@@ -1,13 +1,14 @@
 """Serve a page: in this process until it is told to end, or as a process beside a run."""
 
 import asyncio
-import contextlib
 import socket
 import webbrowser
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import FrameType
 from typing import Any
 
+import uvicorn
 from starlette.types import ASGIApp
 
 from hilplant.failure import Failure
@@ -71,6 +72,13 @@ def url_of(listening: socket.socket, access: Access) -> str:
     return f"http://{f'[{host}]' if ':' in host else host}:{port}/#token={access.token}"
 
 
+class _Server(uvicorn.Server):
+    """Ends on a signal without raising it again afterwards, so that who serves comes to the end of what he does."""
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        self.force_exit, self.should_exit = self.should_exit, True
+
+
 async def serve(
     app: ASGIApp, access: Access, address: Address, ready: Callable[[str], None], ended: asyncio.Event | None = None
 ) -> None:
@@ -81,8 +89,6 @@ async def serve(
     Failure
         When nothing can listen at the address.
     """
-    import uvicorn
-
     listening = address.listen()
     settings: dict[str, Any] = {
         "ws": "websockets-sansio",
@@ -97,7 +103,7 @@ async def serve(
         "log_config": None,
         "access_log": False,
     }
-    server = uvicorn.Server(uvicorn.Config(app, **settings))
+    server = _Server(uvicorn.Config(app, **settings))
     ready(url_of(listening, access))
 
     async def end() -> None:
@@ -107,8 +113,7 @@ async def serve(
 
     ending = asyncio.create_task(end())
     try:
-        with contextlib.suppress(KeyboardInterrupt):
-            await server.serve(sockets=[listening])
+        await server.serve(sockets=[listening])
     finally:
         ending.cancel()
         listening.close()

@@ -1,8 +1,10 @@
 """Whoever has not the token, comes from elsewhere, or sends nonsense is refused and counted; the files are served."""
 
+import asyncio
 import http.client
 import json
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,6 +21,7 @@ from hilplant.failure import Failure
 from hilplant.web.access import Access, AccessLimits, Rate, is_local_name
 from hilplant.web.application import Page
 from hilplant.web.serving import Address
+from hilplant.web.threads import in_thread
 from hilplant.web.visitor import Visitor
 
 
@@ -99,6 +102,42 @@ def test_the_api_wants_the_token_and_its_own_origin(host: str, access: Access) -
     assert ask(host, "/api/echo", authorization=bearer, origin="http://evil.example")[0] == 403
     assert ask(host, "/api/echo", authorization=bearer, host="evil.example")[0] == 421
     assert access.refused == {"wrong token": 2, "foreign origin": 1, "wrong host": 1}
+
+
+def test_the_end_of_the_server_waits_for_no_answer(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    begun, answers = threading.Event(), []
+
+    def long(_: object) -> None:
+        begun.set()
+        threading.Event().wait(60.0)
+
+    async def slow(_: Request) -> JSONResponse:
+        return JSONResponse(await in_thread(long, None))
+
+    access = Access()
+    with served(Page(tmp_path, [Route("/slow", slow)]), access) as url:
+        host, bearer = url.removeprefix("http://").rstrip("/"), f"Bearer {access.token}"
+        asking = threading.Thread(target=lambda: answers.append(ask(host, "/api/slow", authorization=bearer)))
+        asking.start()
+        assert begun.wait(10)
+        ended_s = time.monotonic()
+    asking.join(10)
+    assert time.monotonic() - ended_s < 10.0
+    assert [(status, body) for status, _, body in answers] == [(503, b"the server has ended\n")]
+    assert [record.exc_info for record in caplog.records] == [None]  # a line, no traceback
+
+
+def test_what_a_thread_raises_is_raised_where_it_was_asked_for() -> None:
+    async def both() -> tuple[int, str]:
+        with pytest.raises(Failure, match="wrong") as raised:
+            await in_thread(_wrong, "wrong")
+        return await in_thread(lambda number: 2 * number, 21), str(raised.value)
+
+    assert asyncio.run(both()) == (42, "wrong")
+
+
+def _wrong(text: str) -> None:
+    raise Failure(text)
 
 
 def test_a_body_that_is_too_large_is_refused(host: str, access: Access) -> None:
