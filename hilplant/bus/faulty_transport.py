@@ -119,6 +119,11 @@ class FaultyTransport:
         return OwnEnd(self._transport, self._spoken)
 
     @property
+    def idle(self) -> bool:
+        """Whether frames only pass through, and none of them waits here."""
+        return self._in.idle and self._out.idle and not self._spoken
+
+    @property
     def up(self) -> bool:
         """Whether frames can pass; no longer when the node is off the bus."""
         return self._transport.up and not self._out.cut_off
@@ -130,7 +135,7 @@ class FaultyTransport:
 
     def receive(self, limit: int) -> list[Frame]:
         """Return the frames that have arrived, at most `limit`."""
-        if self._in.idle and self._out.idle and not self._spoken:
+        if self.idle:
             return self._transport.receive(limit)
         self._hear_own()
         for frame in self._transport.receive(limit):

@@ -31,6 +31,11 @@ class Incoming:
             return True
         return self.valid_ns is None or now_ns - self.valid_ns > self.message.timeout_ns
 
+    @property
+    def lost_at_ns(self) -> float:
+        """When it is lost if no more frame comes."""
+        return -math.inf if self.valid_ns is None else self.valid_ns + self.message.timeout_ns + 1
+
     def stayed_away(self, now_ns: int) -> bool:
         """Whether no frame came at all, so that the next may have any counter; one that stands must not pass so."""
         return self.refused_ns is None or now_ns - self.refused_ns > self.message.timeout_ns

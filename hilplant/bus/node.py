@@ -118,6 +118,21 @@ class Node:
         if self._pending:
             self._flush()
 
+    @property
+    def watched(self) -> tuple[list[int], list[float]]:
+        """The values by codec order whose change makes a message due, and what they were."""
+        return self._watched, self._last_watched
+
+    def next_due_ns(self) -> float:
+        """Return when something is due if no frame comes and nothing watched changes; -inf where something waits."""
+        if self._pending or not (self._reopening.was_up and self._transport.up):
+            return -math.inf
+        return min([self._due_ns, *(each.lost_at_ns for each in self._supervised if not each.is_missing)])
+
+    def skip(self, now_ns: int) -> None:
+        """Take it that up to now nothing has come and nothing was due."""
+        self._emptied_ns = now_ns
+
     def send_all(self, values: Sequence[float]) -> None:
         """Send every message once, due or not: the last word of a node that ends."""
         self._pending.extend([self._build(outgoing, values) for outgoing in self._outgoing])

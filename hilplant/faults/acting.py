@@ -87,6 +87,11 @@ class ActingFaults:
         """Whether the signals of every tick are needed."""
         return self._player.watches
 
+    @property
+    def next_change(self) -> float:
+        """The step at which something may change by time alone; endless where nothing will."""
+        return self._next if self._there else math.inf
+
     def begin(self, step: int, row: Row | None) -> FaultChanges:
         """Go on to a step; returns what changes in it.
 

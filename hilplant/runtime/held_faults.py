@@ -1,5 +1,6 @@
 """Faults that clients and scenarios have inserted into a loop: whose they are, and until when."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
@@ -126,6 +127,13 @@ class HeldFaults:
         with_faults = self._acting.rebase(index, value)
         if with_faults != value:
             self._rebased[index] = with_faults
+
+    def next_due_ns(self) -> float:
+        """Return when there is something to do here by time alone; -inf while every tick needs it."""
+        acting = self._acting
+        if self._rebased or acting.watches or not acting.transport.idle or len(acting.present) > 1:
+            return -math.inf
+        return min(self._next_end_ns, acting.next_change * self._step_ns)
 
     def begin(self, tick: int, now_ns: int) -> None:
         """Go on to the next tick: leases that are over, parameters that change, faults that come and go."""

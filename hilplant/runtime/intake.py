@@ -53,6 +53,10 @@ class Intake:
                 self._tell(gone._replace(tick=tick, time_ns=now_ns, outcome=c.LEASE_OVER))
         self.faults.begin(tick, now_ns)
 
+    def next_due_ns(self) -> float:
+        """Return when there is something to do beside the mailbox and the source; -inf while every tick needs it."""
+        return min(self._ownership.next_end_ns, self.faults.next_due_ns())
+
     def _do(self, command: ChannelCommand, tick: int, now_ns: int) -> None:
         """Apply one command and answer it; a sign of life is not answered, nor each value of a scenario's ramp."""
         if not (0 <= command.kind < len(self._apply) and command.owner in (c.SCENARIO, c.HAND)):

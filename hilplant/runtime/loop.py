@@ -36,7 +36,6 @@ _TICK, _MODE, _OVERRUNS, _WORST, _RING_LOST, _RECORDING = (
 _GUARD = OUTPUT_INDEX["guard"]
 _DEGRADED_FOR_NS = SECOND_NS
 
-
 #: A controller inside the loop: called with time [ns] and the rows of state, inputs and parameters as they are in this
 #: tick, it writes its command to the inputs, and says whether it is sound. One that is not is not called again: from
 #: then on the safe state is in force.
@@ -119,9 +118,8 @@ class Loop:
         #: Takes commands at a tick's start; None until :meth:`listen`.
         self.intake: Intake | None = None
         self._was_safe = False
-        self._state = plant.state_row.copy()
+        self._state, self._bus_ns = plant.state_row.copy(), 0
         self._published: list[float] = [0.0] * (len(OUTPUTS) + len(STATUS))
-        self._bus_ns = 0
         node.observe = self._observe if ring is not None else None
 
     def listen(self, mailbox: Mailbox | None, tell: Callable[[ChannelCommand], None], acting: ActingFaults) -> Intake:
@@ -132,10 +130,9 @@ class Loop:
 
     def run(self, ticks: int | None, stop: Callable[[], bool], watchdog: Watchdog) -> None:
         """Tick until `ticks` periods have passed (None: for ever), `stop` says so, or the overrun policy ends it."""
-        step_ns = self._plant.step_ns
+        step_ns, feed_ns = self._plant.step_ns, watchdog.period_ns
         start_ns = self._clock.now_ns() + step_ns
         last_ns = start_ns + (ticks - 1) * step_ns if ticks is not None else None
-        feed_ns = watchdog.period_ns
         next_feed_ns = start_ns + feed_ns
         deadline_ns = start_ns
         self.progress.first_tick_ns = start_ns
@@ -169,15 +166,25 @@ class Loop:
         self._record()
 
     def _step(self, safe: bool, mode: float) -> None:
+        if self._take_inputs(safe):
+            mode = SAFE
+        self._before[:] = self._state
+        plant_tick(self._state, self._inputs, self._parameters, self._plant.tables, self._outputs)
+        self._published = [*self._outputs.tolist(), *self._status_values(mode)]
+
+    def _take_inputs(self, safe: bool) -> bool:
+        """Fill in the tick's inputs and their owners; returns whether the controller has just been stopped."""
         self._inputs[:] = self._node.values
         if self._was_safe:
             self._owners[:] = BUS
         if self._ownership.active:
             self._ownership.impose(self._inputs)
+        stopped = False
         if not safe and self.control is not None:
-            self.control_stopped = not self.control(self._bus_ns, self._state, self._inputs, self._parameters)
-            if self.control_stopped:
-                self.control, mode = None, SAFE
+            stopped = not self.control(self._bus_ns, self._state, self._inputs, self._parameters)
+            self.control_stopped = stopped
+            if stopped:
+                self.control = None
             if self._ownership.active:
                 self._ownership.impose(self._inputs)
         self._was_safe = safe or self.control_stopped
@@ -185,9 +192,7 @@ class Loop:
             for index, value in self._plant.safe:
                 self._inputs[index] = value
                 self._owners[index] = SAFE_STATE
-        self._before[:] = self._state
-        plant_tick(self._state, self._inputs, self._parameters, self._plant.tables, self._outputs)
-        self._published = [*self._outputs.tolist(), *self._status_values(mode)]
+        return stopped
 
     def _record(self) -> None:
         if self._ring is not None:

@@ -146,12 +146,16 @@ def link_settings(loop: ServedLoop) -> LinkSettings:
     return LinkSettings(loop.frames_per_tick, loop.queue_frames, first_ms * MILLISECOND_NS, longest_ms * MILLISECOND_NS)
 
 
-def build_loop(bench: ServedBench, transport: Transport, clock: Clock, ring: Ring | None = None) -> Loop:
-    """Wire a bench, an open interface and a clock into a loop."""
+def build_node(bench: ServedBench, transport: Transport) -> Node:
+    """Wire a bench's messages and an open interface into a node."""
     values = [float(value) for value in bench.input_row]
     settings = replace(link_settings(bench.loop), others=bench.others)
-    node = Node(bench.receive, bench.send, transport, settings, values)
-    return Loop(bench, node, clock, ring, Late(bench.loop.on_overrun, bench.loop.lost_time))
+    return Node(bench.receive, bench.send, transport, settings, values)
+
+
+def build_loop(bench: ServedBench, transport: Transport, clock: Clock, ring: Ring | None = None) -> Loop:
+    """Wire a bench, an open interface and a clock into a loop."""
+    return Loop(bench, build_node(bench, transport), clock, ring, Late(bench.loop.on_overrun, bench.loop.lost_time))
 
 
 def serve(  # noqa: PLR0913, PLR0917

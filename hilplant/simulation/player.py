@@ -1,5 +1,6 @@
 """Plays a scenario into a loop, in virtual time or on the clock: inputs, relays over the bus, and faults."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, cast
@@ -102,6 +103,14 @@ class ScenarioPlayer:
         self._end_if(step >= self.ticks)
         return commands
 
+    def next_due_ns(self) -> float:
+        """Return when it has something to do next; -inf while it waits for its begin."""
+        if self.start_ns is None:
+            return -math.inf
+        steps = [each.step for each in self._left[-1:]] + ([] if self.over else [self.ticks])
+        sends_ns = math.inf if self._commander is None else self._commander.next_due_ns()
+        return min([sends_ns, *(self.start_ns + step * self._step_ns for step in steps)])
+
     def _sent(self, index: int, value: float) -> bool:
         """Take a relay's value for the bus; False for other inputs."""
         if self._commander is None or index not in _RELAYS:
@@ -135,6 +144,10 @@ class Commander:
         messages: list[SentMessage] = [each for each in bench.ecu_side().send if _RELAYS & set(each.sources)]
         self.values = [signal.default for signal in ECU_TX]
         self._node = Node((), messages, cast("Any", transport.own_end()), LinkSettings(), [])
+
+    def next_due_ns(self) -> float:
+        """Return when a message is due."""
+        return self._node.next_due_ns()
 
     def send(self, now_ns: int) -> None:
         """Send what is due."""

@@ -40,7 +40,8 @@ class Evidence:
     """Rows as the loop writes them (tick, deadline, inputs, outputs, status), and every frame with its tick.
 
     `edges` are the ticks at which faults of a name came and went; `start` is the step, counted as the deadlines are,
-    that is the scenario's time 0; `hidden` are steps that count as lost for another reason than the loop's.
+    that is the scenario's time 0; `hidden` are steps that count as lost for another reason than the loop's;
+    `begun` says whether a scenario began to be played.
     """
 
     step_ns: int
@@ -50,6 +51,7 @@ class Evidence:
     edges: Sequence[FaultEdge] = ()
     start: int = 0
     hidden: Sequence[int] = ()
+    begun: bool = True
 
     def fault_marks(self) -> dict[str, float]:
         """Return when each fault first came and last went [s], by a name for people; what stays has no end."""
@@ -65,11 +67,12 @@ class Evidence:
     def trace(self, expectations: Iterable[Expectation], database: DatabaseSignals, ticks: int) -> Trace:
         """Return what these expectations look at, in `ticks` periods from time 0, without the server's last one."""
         wanted = list(expectations)
-        rows = self.rows[self.rows[:, MODE] != STOPPED]
-        places = (rows[:, 1] / self.step_ns).round().astype(np.int64)
-        within = places < self.start + ticks
-        rows, places = rows[within], places[within]
-        count = max(self.start, int(places[-1]) + 1 if len(places) else 0)
+        places = (self.rows[:, 1] / self.step_ns).round().astype(np.int64)
+        stopped = self.rows[:, MODE] == STOPPED
+        due = max((places + ~stopped).tolist(), default=0)  # the last one, in which the server stopped, is not due
+        count = max(self.start, min(due, self.start + ticks))
+        within = (places < count) & ~stopped
+        rows, places = self.rows[within], places[within]
         seen = np.zeros(count, np.bool_)
         seen[places] = True
         lost = np.diff(rows[:, LOSSES], axis=0, prepend=0.0).any(axis=1)
@@ -151,9 +154,10 @@ def recorded(recording: Recording) -> Evidence:
             if event["kind"] == KINDS[START] and start is None:
                 start = round(event["time_ns"] / step_ns)
     whole = np.concatenate(rows)
+    begun = start is not None
     if start is None:
         start = round(whole[0, 1] / step_ns) if len(whole) else 0
-    return Evidence(step_ns, whole, np.array(ticks, np.int64), frames, edges, start)
+    return Evidence(step_ns, whole, np.array(ticks, np.int64), frames, edges, start, begun=begun)
 
 
 def _held(values: Floats, places: Whole) -> Floats:

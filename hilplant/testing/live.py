@@ -15,9 +15,10 @@ from hilplant.testing.evidence import LOSSES, MODE, checked_frames, column_of, v
 from hilplant.testing.known_signals import DatabaseSignals
 from hilplant.testing.scenario_test import Judged
 from hilplant.units import SECOND_NS
+from hilplant.verdicts.arrays import begin_hidden
 from hilplant.verdicts.expectations import Expectation, Frames
 from hilplant.verdicts.frames import FrameTimes, judge_frames
-from hilplant.verdicts.judgement import NO_WINDOW, Judgement
+from hilplant.verdicts.judgement import LOST, NO_WINDOW, Judgement
 from hilplant.verdicts.ticks import LiveExpectation, LiveWindow
 
 
@@ -73,7 +74,10 @@ class LiveJudge:
         if expectation in self._live:
             return self._live[expectation].end()
         assert isinstance(expectation.rule, Frames)  # the others are judged tick by tick
-        first, last = self._windows[expectation].bounds(self._step)
+        window = self._windows[expectation]
+        if begin_hidden(expectation.window, window.first, seen):
+            return Judgement("inconclusive", reason=LOST)
+        first, last = window.bounds(self._step)
         if first is None:
             return Judgement("blocked", reason=NO_WINDOW)
         message = expectation.rule.message
@@ -88,14 +92,15 @@ class LiveJudge:
         lost = bool((row[LOSSES] != self._losses).any()) or self._hidden
         self._losses = row[LOSSES].copy()
         started = self._start is not None and place >= self._start
-        if row[MODE] == STOPPED or (started and place - (self._start or 0) >= self._ticks):
+        step = place - self._start if started and self._start is not None else -1
+        while self._step < min(step, self._ticks):
+            self._feed(values, False)
+        if row[MODE] == STOPPED or step >= self._ticks:
             return
         for name, column in self._columns.items():
             self._values[name] = float(row[column])
         if not started:
             return
-        while self._start is not None and self._step < place - self._start:
-            self._feed(values, False)
         self._feed(self._values, not lost)
         self._hidden = False
 

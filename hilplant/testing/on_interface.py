@@ -11,6 +11,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Protocol
 
+import numpy as np
+
 from hilplant.bench import Bench
 from hilplant.bus.transport import Transport, open_transport
 from hilplant.channel.run_files import runs
@@ -23,16 +25,21 @@ from hilplant.recording.reader import read_recording
 from hilplant.runtime.clock import Clock, WallClock
 from hilplant.runtime.commands import START
 from hilplant.runtime.follower import Follower
+from hilplant.runtime.row import ROW_WIDTH
 from hilplant.simulation.player import commands_relays
 from hilplant.simulation.scenario import Scenario
-from hilplant.testing.evidence import recorded
+from hilplant.testing.evidence import Evidence, recorded
 from hilplant.testing.known_signals import DatabaseSignals, database_signals, protections_of
-from hilplant.testing.scenario_test import ScenarioTest, expected, judged
+from hilplant.testing.scenario_test import Judged, ScenarioTest, expected, judged
 from hilplant.testing.sending import CyclicMessage
 from hilplant.units import MILLISECOND_NS, SECOND_NS
+from hilplant.verdicts.judgement import Judgement
 
-#: How long the server may take to begin: it may have to compile [s].
-_BEGIN_S, _END_S = 600.0, 60.0
+#: How long the server may take to begin, as it may have to compile, and to end; and longer than its scenario [s].
+_BEGIN_S, _END_S, _LONGER_S = 600.0, 60.0, 30.0
+NO_END = "the server was killed, or had to be, before its end"
+#: How a server ends whose run was what it was to be, or not.
+_ENDS = (0, 1)
 _LOOK_NS = MILLISECOND_NS
 #: Who acts here and comes later than this has made the ticks in between unfit for a verdict [ns].
 LATE_NS = 25 * MILLISECOND_NS
@@ -64,10 +71,18 @@ def run_on_interface(
     recording = Path(folder.name) / "run.hilrec"
     transport = open_transport({**bench.interface, "channel": channel})
     with contextlib.closing(transport), _serving(scenario, channel, bench_name, recording) as process:
-        late = _Acting(scenario, bench, _actor(scenario, bench, database, (transport, stand_in))).until_it_ends(process)
-    evidence = replace(recorded(read_recording(recording)), hidden=tuple(late))
+        acting = _Acting(scenario, bench, _actor(scenario, bench, database, (transport, stand_in)))
+        late = acting.until_it_ends(process)
     options = (f" --bench {bench_name}" if bench_name else "") + ("" if stand_in else " --ecu external")
     rerun = f"hilplant test {scenario.path} --on {channel}{options}"
+    if process.returncode not in _ENDS:
+        nothing = Evidence(bench.step_ns, np.zeros((0, ROW_WIDTH)), np.zeros(0, np.int64), ())
+        undecided = tuple(Judged(each, Judgement("inconclusive", reason=NO_END)) for each in expectations)
+        step_s = bench.step_ns / SECOND_NS
+        return ScenarioTest(scenario, bench.name, step_s, nothing, database, undecided, rerun)
+    evidence = replace(recorded(read_recording(recording)), hidden=tuple(late))
+    if scenario.start and not evidence.begun:  # its time 0 has not come
+        evidence = replace(evidence, start=round(evidence.rows[-1, 1] / bench.step_ns) + 1)
     done = judged(scenario, bench.name, evidence, database, expectations, rerun)
 
     def record(path: Path, kept: tempfile.TemporaryDirectory[str] = folder) -> None:
@@ -76,22 +91,31 @@ def run_on_interface(
     return replace(done, record=record)
 
 
+def server_command(scenario: Scenario, channel: str, bench_name: str | None, recording: Path) -> list[str]:
+    """Return the command line of the server that plays a scenario."""
+    command = [sys.executable, "-m", "hilplant", "run", bench_name or scenario.bench or "default"]
+    command += ["--channel", channel, "--scenario", str(scenario.path), "--record", str(recording)]
+    return [*command, "--no-channel", "--no-verdicts"]
+
+
 @contextmanager
 def _serving(
     scenario: Scenario, channel: str, bench_name: str | None, recording: Path
 ) -> Iterator[subprocess.Popen[bytes]]:
-    command = [sys.executable, "-m", "hilplant", "run", bench_name or scenario.bench or "default"]
-    command += ["--channel", channel, "--scenario", str(scenario.path), "--record", str(recording)]
+    command = server_command(scenario, channel, bench_name, recording)
     with tempfile.TemporaryFile() as said:
         options: dict[str, Any] = {"stdout": said, "stderr": subprocess.STDOUT, "stdin": subprocess.DEVNULL}
-        process = subprocess.Popen([*command, "--no-channel", "--no-verdicts"], **options)
+        process = subprocess.Popen(command, **options)
         try:
             yield process
-            process.wait(_END_S)
-        finally:
-            if process.poll() is None:
-                process.terminate()
+            with contextlib.suppress(subprocess.TimeoutExpired):
                 process.wait(_END_S)
+        finally:
+            for ask in (process.terminate, process.kill):
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    if process.poll() is None:
+                        ask()
+                        process.wait(_END_S)
         if not recording.exists():
             said.seek(0)
             raise Failure(f"{scenario.path}: the server did not run: {said.read().decode(errors='replace').strip()}")
@@ -109,29 +133,35 @@ class _Acting:
     late: list[int] = field(default_factory=list)
 
     def until_it_ends(self, process: subprocess.Popen[bytes]) -> list[int]:
-        """Act until the loop has ended; returns the steps that are unfit because this end came late."""
+        """Act until the loop has ended or should have; returns the steps that are unfit because this end came late."""
         follower = self._follower(process)
         if follower is None:
             return []
         period_ns, acted_ns = round(self.bench.ecu.period_ms * MILLISECOND_NS), 0
+        limit_ns = self.clock.now_ns() + round(_BEGIN_S * SECOND_NS)
+        longest_s = self.scenario.seconds + self.scenario.start_within + _LONGER_S
         with contextlib.closing(follower):
-            while not follower.ended and process.poll() is None:
+            while not follower.ended and process.poll() is None and self.clock.now_ns() < limit_ns:
                 now_ns = int(follower.latest()[1])
+                if now_ns and not acted_ns:
+                    limit_ns = self.clock.now_ns() + round(longest_s * SECOND_NS)
                 for event in follower.events().records:
                     if event["kind"] == START and self.start_ns is None:
                         self.start_ns = int(event["time_ns"])
-                if self.actor is not None and now_ns >= acted_ns + period_ns:
-                    self._act(self.actor, now_ns, acted_ns)
+                if now_ns >= acted_ns + period_ns:
+                    self._act(now_ns, acted_ns)
                     acted_ns = now_ns
                 self.clock.sleep_until_ns(self.clock.now_ns() + _LOOK_NS)
         return self.late
 
-    def _act(self, actor: Actor, now_ns: int, acted_ns: int) -> None:
+    def _act(self, now_ns: int, acted_ns: int) -> None:
+        if self.actor is None:
+            return
         step_ns = self.bench.step_ns
         if acted_ns and now_ns - acted_ns > LATE_NS:
             self.late.extend(range(acted_ns // step_ns, now_ns // step_ns + 1))
         stalk_s = -1.0 if self.start_ns is None else (now_ns - self.start_ns) / SECOND_NS
-        actor.act(now_ns, stalk_at(self.scenario.stalk, stalk_s))
+        self.actor.act(now_ns, stalk_at(self.scenario.stalk, stalk_s))
 
     def _follower(self, process: subprocess.Popen[bytes]) -> Follower | None:
         """Wait for the loop's first row; None where the server has ended before."""

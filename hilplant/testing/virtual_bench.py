@@ -1,5 +1,6 @@
 """A plant, and if wanted the stand-in ECU, on an in-memory bus in virtual time; every tick and every frame is kept."""
 
+import math
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -16,12 +17,11 @@ from hilplant.ecu.stalk import stalk_at
 from hilplant.faults.acting import ActingFaults
 from hilplant.faults.timing import Course
 from hilplant.faults.written import FaultEntry
-from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.commands import COMES, GOES
-from hilplant.runtime.ring import Ring
 from hilplant.runtime.row import ROW_WIDTH
-from hilplant.runtime.server import build_loop
+from hilplant.runtime.server import build_node
 from hilplant.runtime.tape import Tape
+from hilplant.runtime.virtual_loop import VirtualLoop
 from hilplant.simulation.player import ScenarioPlayer, commands_relays
 from hilplant.simulation.scenario import Scenario
 from hilplant.testing.evidence import Evidence, FaultEdge
@@ -43,9 +43,10 @@ class VirtualBench:
             row = initial_state(bench.parameters, bench.initial | scenario.initial)
             bench = replace(bench, state_row=row)
         self.bench, self.bus, self.tape = bench, InMemoryBus(), Tape()
-        acting = ActingFaults(bench, self.bus.end())
+        self._plant_end = self.bus.end()
+        acting = ActingFaults(bench, self._plant_end)
         self._stalk = scenario.stalk if scenario is not None else ()
-        self._loop = build_loop(bench, acting.transport, VirtualClock(), cast("Ring", self.tape))
+        self._loop = VirtualLoop(bench, build_node(bench, acting.transport), self.tape)
         intake = self._loop.listen(None, self.tape.events.append, acting)
         #: The faults of the loop; they take more.
         self.faults = intake.faults
@@ -69,12 +70,26 @@ class VirtualBench:
         """The time of the next tick."""
         return self.tape.ticks * self.bench.step_ns
 
-    def step(self) -> None:
-        """Take one tick: the scenario's hand, the plant, and the ECU when it is its turn."""
-        tick, now_ns = self.tape.ticks, self.tape.ticks * self.bench.step_ns
-        self._loop.tick(now_ns)
-        if self.ecu is not None and tick % self._poll_ticks == 0:
-            self.ecu.poll(now_ns, stalk_at(self._stalk, (now_ns - self._start_ns) / SECOND_NS))
+    def step(self, most: int = 1) -> int:
+        """Take one tick: the scenario's hand, the plant, and the ECU when it is its turn; returns how many were taken.
+
+        Of ticks in which nothing but the plant's step is due it takes several, `most` at the most.
+        """
+        most = min(most, -self.tape.ticks % self._poll_ticks + 1)
+        player_ns = math.inf if self.player is None else self.player.next_due_ns()
+        taken = 0 if self._plant_end.coming else self._loop.quiet_ticks(most, player_ns)
+        if not taken:
+            self._loop.tick(self.now_ns)
+            taken = 1
+        self._poll()
+        return taken
+
+    def _poll(self) -> None:
+        """Let the ECU act behind the last tick, when it is its turn."""
+        last = self.tape.ticks - 1
+        if self.ecu is not None and last % self._poll_ticks == 0:
+            last_ns = last * self.bench.step_ns
+            self.ecu.poll(last_ns, stalk_at(self._stalk, (last_ns - self._start_ns) / SECOND_NS))
 
     @property
     def _start_ns(self) -> int:
@@ -86,15 +101,15 @@ class VirtualBench:
         """Take ticks to the scenario's end, or to where its begin may no longer come."""
         player = self.player
         while player is not None and not player.over and not self._ended(player):
-            self.step()
+            self.step(self._poll_ticks)
 
     def _ended(self, player: ScenarioPlayer) -> bool:
         return player.start_ns is not None and self.now_ns >= player.start_ns + player.ticks * self.bench.step_ns
 
     def run(self, ticks: int) -> None:
         """Take many ticks."""
-        for _ in range(ticks):
-            self.step()
+        while ticks > 0:
+            ticks -= self.step(ticks)
 
     def set(self, index: int, value: float) -> None:
         """Set an input of the plant from the next tick on."""

@@ -62,7 +62,7 @@ class WiperUnderTest:
         if self._bus is None:
             from hilplant.testing.virtual_can import VirtualCanBus
 
-            self._bus = VirtualCanBus(self.virtual.bus.end(), self.step, lambda: self.virtual.now_ns)
+            self._bus = VirtualCanBus(self.virtual.bus.end(), self._one_tick, lambda: self.virtual.now_ns)
         return self._bus
 
     @property
@@ -112,22 +112,30 @@ class WiperUnderTest:
         """Insert a fault that stays for as long as it says; keys as for `fault`."""
         return self.virtual.insert_fault(entry_named(fault, keys))
 
-    def step(self) -> None:
-        """Let one tick pass."""
-        now_ns = self.virtual.now_ns
+    def step(self, most: int = 1) -> int:
+        """Let one tick pass, or several that are quiet, `most` at the most; returns how many."""
+        now_ns, step_ns = self.virtual.now_ns, self.virtual.bench.step_ns
         for cyclic in self._cyclic.values():
             if cyclic.period_ns and now_ns >= cyclic.due_ns:
                 self._end.send(cyclic.frame())
                 cyclic.due_ns += cyclic.period_ns
         if self._bus is not None:
             self._bus.send_due(now_ns)
-        self.virtual.step()
+            most = 1
+        due_ns = [each.due_ns for each in self._cyclic.values() if each.period_ns]
+        most = min([most, *(max(1, -((now_ns - due) // step_ns)) for due in due_ns)])
+        taken = self.virtual.step(most)
         self._end.coming.clear()
+        return taken
+
+    def _one_tick(self) -> None:
+        self.step()
 
     def run(self, seconds: float) -> None:
         """Let plant seconds pass."""
-        for _ in range(round(seconds * SECOND_NS / self.virtual.bench.step_ns)):
-            self.step()
+        ticks = round(seconds * SECOND_NS / self.virtual.bench.step_ns)
+        while ticks > 0:
+            ticks -= self.step(ticks)
 
     def wait(self, signal: str, equals: Any = None, *, within: float = DEFAULT_WAIT_S, **limits: Any) -> float:
         """Let time pass until a signal has a value, or obeys `below`, `above`, `between`; return how long it took [s].

@@ -25,10 +25,11 @@ from hilplant.verdicts.expectations import (
     Settles,
     Stays,
     Steps,
+    Window,
     is_over,
 )
 from hilplant.verdicts.frames import FrameTimes, judge_frames
-from hilplant.verdicts.judgement import NO_WINDOW, Judgement, Piece, combine, unless_hidden
+from hilplant.verdicts.judgement import LOST, NO_WINDOW, Judgement, Piece, combine, unless_hidden
 
 #: How many ticks before and behind a violation its values are kept.
 AROUND = 3
@@ -55,6 +56,8 @@ class Trace:
 def judge(expectation: Expectation, trace: Trace) -> Judgement:
     """Return the verdict on a whole run."""
     first = follow(expectation.window.after, 0, trace)
+    if begin_hidden(expectation.window, first, trace.seen):
+        return Judgement("inconclusive", reason=LOST)
     if first is None or first >= trace.ticks:
         return Judgement("blocked", reason=NO_WINDOW)
     until = expectation.window.until
@@ -68,6 +71,11 @@ def judge(expectation: Expectation, trace: Trace) -> Judgement:
     gaps = [not trace.seen[a : piece.tick + 1].all() for a, piece in zip(begun, pieces, strict=True)]
     hidden = expectation.searches and not trace.seen[first:last].all()
     return with_values(unless_hidden(combine(pieces, gaps), hidden), expectation, trace)
+
+
+def begin_hidden(window: Window, first: int | None, seen: Flags) -> bool:
+    """Say whether a lost tick may have hidden where a window begins; `first` is where it was found to begin."""
+    return window.is_sought and not seen[: None if first is None else first + 1].all()
 
 
 def with_values(judgement: Judgement, expectation: Expectation, trace: Trace) -> Judgement:

@@ -45,6 +45,11 @@ class Window:
     until: Steps = ()
     during: Condition = ()
 
+    @property
+    def is_sought(self) -> bool:
+        """Whether its begin depends on what is seen, so that a tick that was lost may hide it."""
+        return any(not isinstance(step, int) for step in self.after)
+
 
 @dataclass(frozen=True, slots=True)
 class Holds:

@@ -22,7 +22,7 @@ from hilplant.verdicts.expectations import (
     Window,
     is_over,
 )
-from hilplant.verdicts.judgement import NO_WINDOW, Judgement, Piece, combine, unless_hidden
+from hilplant.verdicts.judgement import LOST, NO_WINDOW, Judgement, Piece, combine, unless_hidden
 from hilplant.verdicts.stretches import StretchJudge, stretch_of
 
 Row = Mapping[str, float]
@@ -72,6 +72,8 @@ class LiveExpectation:
     @property
     def failed(self) -> bool:
         """Whether it is violated already, and nothing was lost before that."""
+        if self._begin_hidden:
+            return False
         broken = [(first, stretch.broken) for first, stretch in self._open if stretch.broken is not None]
         lost = [any(first <= gap <= tick for gap in self._lost_ticks) for first, tick in broken]
         return not all(lost) or self.judgement().ruling == "fail"
@@ -93,11 +95,19 @@ class LiveExpectation:
         return self._judgement(self._done)
 
     def _judgement(self, done: Mapping[int, Piece]) -> Judgement:
+        if self._begin_hidden:
+            return Judgement("inconclusive", reason=LOST)
         if self._first is None:
             return Judgement("blocked", reason=NO_WINDOW)
         pieces = [(first, done[first]) for first in self._begun if first in done]
         gaps = [any(first <= lost <= piece.tick for lost in self._lost_ticks) for first, piece in pieces]
         return unless_hidden(combine([piece for _, piece in pieces], gaps), self._hidden)
+
+    @property
+    def _begin_hidden(self) -> bool:
+        """Whether a lost tick may have hidden where the window begins."""
+        end = self._tick if self._first is None else self._first
+        return self._window.is_sought and bool(self._lost_ticks) and self._lost_ticks[0] <= end
 
     def _closed(self, row: Row) -> bool:
         return self._over or (bool(self._window.until) and self._end.reached(self._tick, row, self._before))
@@ -174,6 +184,11 @@ class LiveWindow:
         if self._first is not None and self._last is None and self._window.until:
             self._last = self._tick if self._end.reached(self._tick, row, self._before) else None
         self._before = row
+
+    @property
+    def first(self) -> int | None:
+        """The tick at which it began; None while it has not."""
+        return self._first
 
     def bounds(self, ticks: int) -> tuple[int | None, int]:
         """Return first tick, None where none is, and the one behind the last, in a run of that length."""

@@ -10,9 +10,10 @@ from junitparser import JUnitXml
 from hilplant.bench import Bench, load_bench
 from hilplant.checked_yaml.problems import BenchError
 from hilplant.failure import Failure
+from hilplant.runtime.loop import STOPPED
 from hilplant.runtime.row import ROW_WIDTH
 from hilplant.simulation.scenario import load_scenario
-from hilplant.testing.evidence import Evidence
+from hilplant.testing.evidence import MODE, Evidence
 from hilplant.testing.junit import write_junit
 from hilplant.testing.known_signals import database_signals, protections_of
 from hilplant.testing.report import page_of
@@ -113,6 +114,20 @@ def test_a_run_that_ends_early_decides_nothing_that_was_to_come(done: ScenarioTe
     text = {each.expectation.text: each.judgement for each in found.judged}
     waiting = text["within: 3, signal: {park_contact: on, relay_on: off}, after: 4"]
     assert (waiting.ruling, waiting.reason) == ("inconclusive", "the run ended before it could be decided")
+
+
+def test_last_ticks_that_are_lost_leave_it_inconclusive(done: ScenarioTest, bench: Bench) -> None:
+    """The server's last row tells that ticks before it were due: what held up to there may have been broken in them."""
+    database = database_signals(bench.sources, {})
+    scenario, rows = done.scenario, done.evidence.rows[[*range(4050), 4099]]
+    rows[-1, MODE] = STOPPED
+    cut = replace(done.evidence, rows=rows)
+    found = judged(scenario, bench.name, cut, database, expected(scenario, database, bench.step_ns), "")
+    told = {each.expectation.text: each.judgement for each in found.judged}
+    assert (told["always: current_a, below: 25"].ruling, told["always: current_a, below: 25"].tick) == (
+        "inconclusive", 4098,
+    )  # fmt: skip
+    assert told["rises: RelayOn, within: 0.06, after: 1"].ruling == "pass"  # decided before
 
 
 def test_another_tool_reads_the_junit_file(done: ScenarioTest, tmp_path: Path) -> None:

@@ -9,6 +9,10 @@ from typing import Any
 
 import pytest
 
+from hilplant.bench import load_bench
+from hilplant.simulation.scenario import load_scenario
+from hilplant.testing import on_interface
+
 FILES = Path(__file__).parents[1] / "data" / "on_a_bus"
 #: A multicast group is a bus that other processes reach without CAN in the kernel.
 GROUP = "239.74.163.2"
@@ -34,7 +38,7 @@ def loop_is_there():
 
 os.sched_setaffinity(0, {{{cpu}}})
 try:
-    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(80))
+    os.sched_setscheduler(0, os.SCHED_RR, os.sched_param({priority}))
 except OSError:
     pass
 while True:
@@ -64,6 +68,7 @@ def bench(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.timeout(900)  # ten servers start, one after the other
 def test_the_same_ten_files_get_the_same_verdicts_where_no_tick_was_lost(bench: Path, tmp_path: Path) -> None:
     virtual = verdicts("polynomial", tmp_path / "virtual.json", str(FILES))
     clocked = verdicts(bench, tmp_path / "clocked.json", str(FILES), "--on", GROUP)
@@ -73,11 +78,12 @@ def test_the_same_ten_files_get_the_same_verdicts_where_no_tick_was_lost(bench: 
     assert {name: clocked[name]["ruling"] for name in decided} == {name: virtual[name]["ruling"] for name in decided}
 
 
+@pytest.mark.timeout(900)
 def test_an_overloaded_loop_gives_inconclusive_never_fail_or_pass(bench: Path, tmp_path: Path) -> None:
     """The loop stays on one CPU, with busy processes of its own priority from its start on."""
     cpu = min(os.sched_getaffinity(0))
     bench.write_text(bench.read_text() + f"loop: {{cpu: {cpu}}}\n")
-    spin = BUSY.format(cpu=cpu)
+    spin = BUSY.format(cpu=cpu, priority=load_bench(bench).loop.priority)
     busy = [subprocess.Popen([sys.executable, "-c", spin]) for _ in range(2)]
     try:
         files = [str(FILES / name) for name in ("02_slow.yaml", "08_too_strict.yaml")]
@@ -87,3 +93,26 @@ def test_an_overloaded_loop_gives_inconclusive_never_fail_or_pass(bench: Path, t
             each.kill()
             each.wait()
     assert {each["ruling"] for each in found.values()} == {"inconclusive"}
+
+
+SERVERS = {
+    "hangs": "import time; time.sleep(60)",
+    "hears nobody": "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(60)",
+    "dies": "import os; os.kill(os.getpid(), 9)",
+}
+
+
+@pytest.mark.parametrize("does", SERVERS.values(), ids=SERVERS)
+def test_a_server_that_comes_to_no_end_decides_nothing(does: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No wait is without a limit, and what was not seen to its end is neither passed nor failed."""
+
+    def instead(_scenario: object, _channel: str, _bench: object, recording: Path) -> list[str]:
+        return [sys.executable, "-c", f"open({str(recording)!r}, 'w').close(); {does}"]
+
+    monkeypatch.setattr(on_interface, "server_command", instead)
+    monkeypatch.setattr(on_interface, "_BEGIN_S", 0.1)
+    monkeypatch.setattr(on_interface, "_END_S", 1.0)
+    done = on_interface.run_on_interface(load_scenario(FILES / "02_slow.yaml"), load_bench("virtual"), "no_end")
+    assert done.ruling == "inconclusive"
+    assert {each.judgement.reason for each in done.judged} == {on_interface.NO_END}
+    assert len(done.judged) == 3

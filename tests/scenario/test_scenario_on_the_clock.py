@@ -131,6 +131,22 @@ def test_ticks_that_are_lost_in_a_window_leave_it_inconclusive(tmp_path: Path) -
     played.close()
 
 
+def test_the_last_ticks_lost_leave_it_inconclusive(tmp_path: Path) -> None:
+    """What holds at every tick that was seen may be broken in those at the end that were not."""
+    played = Played(scenario(tmp_path, f"{WIPES}  - {{always: current_a, below: 100}}\n"))
+    length = ticks_of(played_scenario(played), played.bench.step_ns)
+    while played.now < length - 40:
+        played.tick(20)
+        played.look()
+    played.now = length
+    played.tick(1)
+    played.look()
+    assert played.ended
+    (always,) = [each.judgement for each in played.judge.end() if each.expectation.text.endswith("below: 100")]
+    assert (always.ruling, always.tick) == ("inconclusive", length - 1)
+    played.close()
+
+
 def test_inputs_are_the_scenarios_and_relays_go_over_the_bus(played: Played) -> None:
     played.tick(1)
     assert (played.input(SUPPLY_V), played.owner(SUPPLY_V)) == (12.0, "scenario")
