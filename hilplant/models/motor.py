@@ -180,7 +180,8 @@ def instant_of_zero(motion: ArmatureMotion, drive: ArmatureDrive, sign: float, b
             low = instant
         else:
             high = instant
-        following = instant - point.speed / acceleration(point, drive, torque)
+        slope = acceleration(point, drive, torque)
+        following = instant - point.speed / slope if slope != 0.0 else -1.0  # 0: it keeps its speed
         if not low <= following <= high:
             following = 0.5 * (low + high)
         if abs(following - instant) <= SEARCH_TOLERANCE * below:

@@ -3,11 +3,14 @@
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
+from scipy.linalg import expm
+from scipy.optimize import brentq
 
 from hilplant.models.armature import ArmatureDrive, ArmatureMotion
-from hilplant.models.motor import advance
+from hilplant.models.motor import advance, instant_of_zero
 from hilplant.models.records import Brush, Motor
 
 MOTORS = Path(__file__).parents[2] / "config" / "motors"
@@ -74,6 +77,30 @@ def test_dry_friction_alone_stops_a_motor_at_the_point_that_its_energy_allows() 
     assert motion.turned == pytest.approx(2e-5 * 400.0 / (2.0 * 0.5), rel=1e-3)
     later = advance(motion, drive, 1e-3)
     assert (later.speed, later.turned) == (0.0, motion.turned)
+
+
+@pytest.mark.parametrize("share", [0.05, 0.2, 1.0])
+@pytest.mark.parametrize("name", NAMES)
+def test_a_short_circuited_motor_stops_when_the_matrix_exponential_says(name: str, share: float) -> None:
+    motor = motor_of(name)
+    brush, dry = motor.fast, share * motor.fast.constant_v_s * 13.5 / motor.fast.resistance_ohm
+    drive = drive_of(brush, motor, 0.0, dry)
+    rate = 1.0 / motor.inertia_kg_m2
+    matrix = np.array([
+        [-brush.resistance_ohm / brush.inductance_henry, -brush.constant_v_s / brush.inductance_henry, 0.0],
+        [brush.constant_v_s * rate, -motor.damping_n_m_s * rate, -dry * rate],
+        [0.0, 0.0, 0.0],
+    ])  # fmt: skip
+
+    def speed(time_s: float) -> float:
+        return float((expm(matrix * time_s) @ (0.0, 10.0, 1.0))[1])
+
+    stopped = next(time_s for time_s in 1e-8 * 1.5 ** np.arange(60) if speed(time_s) < 0.0)
+    expected = brentq(speed, stopped / 1.5, stopped, xtol=1e-15)
+    motion, within = ArmatureMotion(0.0, 10.0, 0.0), max(1e-3, stopped)
+    # a quick motor keeps its speed long before the end of a step: where it does, nothing is divided by its acceleration
+    for search in (instant_of_zero, getattr(instant_of_zero, "py_func", instant_of_zero)):
+        assert search(motion, drive, 1.0, within) == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_motor_at_rest_without_dry_friction_starts() -> None:
