@@ -9,14 +9,15 @@ from pathlib import Path
 from typing import Any
 
 from hilplant.atomic_write import make_folder
+from hilplant.extras import need
 from hilplant.failure import Failure
-from hilplant.modelling.recordings import columns_of, cut, looked_at
+from hilplant.modelling.recordings import DATABASES, columns_of, cut, looked_at, named_files
 from hilplant.modelling.session import ModellingSession
 
 Asked = Mapping[str, Any]
 
 _OF_IDENTIFICATION = (
-    "columns", "frames", "hold", "also", "search", "generations", "population", "ordered", "seed", "resume", "date",
+    "columns", "hold", "also", "search", "generations", "population", "ordered", "seed", "resume", "date",
     "stages",
 )  # fmt: skip
 #: Trainings with their settings, those of the commands.
@@ -40,6 +41,10 @@ _TRAININGS: dict[str, dict[str, Any]] = {
 #: How long a run may take until its page is there, the compiler included; how often it is looked at [s].
 _START_S, _LOOK_S = 300.0, 0.5
 _ADDRESS = re.compile(r"http://\S+#token=\S+")
+#: What a run says once its bus is open and its loop begins.
+_SERVES = "Ctrl-C ends it"
+#: How the page names the bench that it shows among what reads frames.
+OWN_BENCH = "bench"
 
 
 class LongAnswers:
@@ -49,9 +54,12 @@ class LongAnswers:
         """Take the session; `asked_for` has what can be asked for by its name."""
         self._session = session
         self.asked_for: dict[str, Callable[[Asked], Any]] = {
-            "recordings": lambda _: [{"name": path.name} for path in sorted(session.recordings.iterdir())],
-            "columns": lambda asked: columns_of(self._recording(asked["name"])),
-            "look": lambda asked: looked_at(self._recording(asked["name"]), asked["columns"], asked.get("mode")),
+            "recordings": lambda _: named_files(session.recordings),
+            "databases": lambda _: named_files(session.recordings, DATABASES),
+            "columns": lambda asked: columns_of(self._recording(asked["name"]), self._frames(asked)),
+            "look": lambda asked: looked_at(
+                self._recording(asked["name"]), asked["columns"], asked.get("mode"), self._frames(asked)
+            ),
             "cut": self._cut,
             "identify": self._identify,
             "train": self._train,
@@ -96,13 +104,43 @@ class LongAnswers:
             raise Failure(f"there is no recording {name}")
         return path
 
+    def _frames(self, asked: Asked) -> str | None:
+        """Return what reads the frames of CAN logs, as the commands take it: a database that was given, or the bench.
+
+        The page says either's name, and behind an @ the channel of the log.
+        """
+        name, at, channel = str(asked.get("frames") or "").partition("@")
+        if not name:
+            return None
+        known = str(self._session.laid_out("of_frames")) if name == OWN_BENCH else str(self._recording(name))
+        return f"{known}{at}{channel}"
+
     def _cut(self, asked: Asked) -> dict[str, str]:
-        span = float(asked["from_s"]), float(asked["to_s"])
-        return {"name": cut(self._recording(asked["name"]), span, asked["columns"], asked.get("mode")).name}
+        span, mode = (float(asked["from_s"]), float(asked["to_s"])), asked.get("mode")
+        return {"name": cut(self._recording(asked["name"]), span, asked["columns"], mode, self._frames(asked)).name}
+
+    def motor_text(self, name: str) -> str:
+        """Return the motor file that readings, a data sheet or windings make, section 5.4.
+
+        Raises
+        ------
+        Failure
+            When they make none.
+
+        """
+        need("identify")
+        from hilplant.motor_bench.motor_file import motor_from_readings
+
+        path, out = self._recording(name), make_folder(self._session.work / "readings") / "motor.yaml"
+        try:
+            motor_from_readings(path, out)
+        except Failure as error:
+            raise Failure(str(error).replace(f"{path.parent}/", "")) from error
+        return out.read_text(encoding="utf-8")
 
     def _identify(self, asked: Asked) -> dict[str, Any]:
         self._refuse_problems()
-        wanted = {key: asked[key] for key in _OF_IDENTIFICATION if key in asked}
+        wanted = {key: asked[key] for key in _OF_IDENTIFICATION if key in asked} | {"frames": self._frames(asked)}
         for key in ("data", "held_out"):
             wanted[key] = [self._named(each) for each in asked.get(key, [])]
         if not wanted["data"]:
@@ -160,9 +198,10 @@ class LongAnswers:
             )
         for _ in range(round(_START_S / _LOOK_S)):
             text = log.read_text(encoding="utf-8", errors="replace")
-            if found := _ADDRESS.search(text):
-                return {"command": f"hilplant run {path} --page", "page": found[0], "said": text}
+            if (found := _ADDRESS.search(text)) and _SERVES in text:
+                return {"command": f"hilplant run {path} --page, process {child.pid}", "page": found[0], "said": text}
             with contextlib.suppress(subprocess.TimeoutExpired):
                 child.wait(_LOOK_S)
-                raise Failure(log.read_text(encoding="utf-8", errors="replace").strip() or "the run ended at once")
-        return {"command": f"hilplant run {path} --page", "page": "", "said": text}
+                lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
+                raise Failure("\n".join(line for line in lines if not _ADDRESS.search(line)) or "the run ended at once")
+        return {"command": f"hilplant run {path} --page, process {child.pid}", "page": "", "said": text}

@@ -69,6 +69,11 @@ def with_library_part(model: ModelFiles, part: str, name: str) -> ModelFiles:
     path = shipped("config", _FOLDERS[part], f"{Path(name).stem}.yaml")
     if not path.is_file():
         raise Failure(f"{name}: none of the shipped {_FOLDERS[part]}")
+    return with_part(model, part, path.read_text(encoding="utf-8"))
+
+
+def with_part(model: ModelFiles, part: str, text: str) -> ModelFiles:
+    """Return a model with this text as its motor, linkage or screen."""
     with model.laid_out() as here:
         document = here.read().document
         file = here.name_of(document.place(("plant", part))[0])
@@ -76,7 +81,7 @@ def with_library_part(model: ModelFiles, part: str, name: str) -> ModelFiles:
         file = PARTS[part]
         bench = with_value(model.texts[model.bench], ("plant", part), file)
         model = replace(model, texts={**model.texts, model.bench: bench})
-    return replace(model, texts={**model.texts, file: path.read_text(encoding="utf-8")})
+    return replace(model, texts={**model.texts, file: text})
 
 
 def _of_user(path: Path, document: Document, files: list[str]) -> ModelFiles:

@@ -1,6 +1,7 @@
 """Recordings that the page was given: kept in a folder, looked at, cut, and named as the commands name them."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,11 +21,14 @@ from hilplant.measurements.preparation import Preparation, read_measurement
 #: Points of a curve that a page draws at most.
 MOST_POINTS = 2000
 
+#: What reads the frames of a CAN log, and what a motor is made of, see `hilplant motor`.
+DATABASES, READINGS = (".dbc", ".arxml", ".kcd", ".sym", ".cdd"), (".yaml", ".yml")
+
 _NAME = re.compile(r"[\w .()+-]{1,100}")
 
 
 def kept(folder: Path, name: str, content: bytes) -> Path:
-    """Keep a recording under its own name; one of the same name is replaced.
+    """Keep a file that the page was given under its own name; one of the same name is replaced.
 
     Raises
     ------
@@ -32,9 +36,9 @@ def kept(folder: Path, name: str, content: bytes) -> Path:
         For a name that is none, or an ending that nobody reads.
 
     """
-    plain = Path(name).name
-    if not _NAME.fullmatch(plain) or plain.startswith(".") or Path(plain).suffix.lower() not in ENDINGS:
-        raise Failure(f"'{name}' is no name of a recording; the ending must be one of {', '.join(ENDINGS)}")
+    plain, endings = Path(name).name, (*ENDINGS, *DATABASES, *READINGS)
+    if not _NAME.fullmatch(plain) or plain.startswith(".") or Path(plain).suffix.lower() not in endings:
+        raise Failure(f"'{name}' is no name of a recording; the ending must be one of {', '.join(endings)}")
     path = folder / plain
     path.write_bytes(content)
     return path
@@ -62,7 +66,14 @@ def looked_at(path: Path, columns: str = "", mode: str | None = None, frames: st
     }
 
 
-def cut(path: Path, span_s: tuple[float, float], columns: str = "", mode: str | None = None) -> Path:
+def named_files(folder: Path, endings: Sequence[str] = ENDINGS) -> list[dict[str, str]]:
+    """Return the names of the files that were given with one of these endings."""
+    return [{"name": path.name} for path in sorted(folder.iterdir()) if path.suffix.lower() in endings]
+
+
+def cut(
+    path: Path, span_s: tuple[float, float], columns: str = "", mode: str | None = None, frames: str | None = None
+) -> Path:
     """Write the part of a recording between two times as a file of its own, in SI units.
 
     Raises
@@ -71,7 +82,7 @@ def cut(path: Path, span_s: tuple[float, float], columns: str = "", mode: str | 
         When less than a second would be left.
 
     """
-    data = _read(path, columns, mode, None)
+    data = _read(path, columns, mode, frames)
     inside = (data.time_s >= span_s[0]) & (data.time_s <= span_s[1])
     if np.count_nonzero(inside) * data.period_s < 1.0:
         raise Failure(f"{path.name}: between {span_s[0]:g} and {span_s[1]:g} s there is less than a second of data")

@@ -13,7 +13,7 @@ from hilplant.failure import Failure
 from hilplant.modelling.answers import Answers
 from hilplant.modelling.long_answers import LongAnswers
 from hilplant.modelling.long_work import plain
-from hilplant.modelling.opening import with_library_part
+from hilplant.modelling.opening import with_library_part, with_part
 from hilplant.modelling.recordings import kept
 from hilplant.modelling.session import ModellingSession
 from hilplant.web.threads import in_thread
@@ -34,6 +34,9 @@ def routes(session: ModellingSession) -> list[Route]:
         ),
         "part": lambda asked: session.change(
             asked["version"], lambda model: with_library_part(model, asked["part"], asked["name"])
+        ),
+        "readings": lambda asked: session.change(
+            asked["version"], lambda model: with_part(model, "motor", longer.motor_text(asked["name"]))
         ),
         "open": lambda asked: session.open(asked["version"], asked["bench"]),
         "undo": lambda _: session.step(-1),

@@ -9,7 +9,7 @@ import { store } from "./store.js";
 
 const SCREEN = ["plant", "screen"];
 const AIR = { "without spoiler": { drag: 0.175, lift: 0.0517 }, "with spoiler": { drag: 0.219, lift: -0.0694 } };
-const LINES = [["mu_dry", "dry", "s2"], ["mu_tacky", "tacky", "s5"], ["mu_wet", "wet", "s1"], ["mu_wet_5_n", "wet, 5 N", "s6"], ["mu_wet_10_n", "wet, 10 N", "s6"], ["mu_wet_15_n", "wet, 15 N", "s6"]];
+const LINES = [["mu_dry", "dry", "s2"], ["mu_tacky", "tacky", "s5"], ["mu_wet", "wet", "s1"], ["mu_wet_5_n", "wet, 5 N", "s3"], ["mu_wet_10_n", "wet, 10 N", "s4"], ["mu_wet_15_n", "wet, 15 N", "s8"]];
 
 export function environmentPanel() {
   const numbered = (name, count) => Object.fromEntries(Array.from({ length: count }, (_, index) => [`mu_${name}_${index + 1}`, { label: `u_${index + 1}` }]));
@@ -57,6 +57,12 @@ function friction() {
   return element("div", {}, element("div", { class: "columns" }, low, whole), told);
 }
 
+// The sets of section 4.5 by their names, the blades of this bench over them.
+function airLine(name) {
+  const side = ["left", "right"].find((each) => name.endsWith(`_${each}`));
+  return side ? { label: `${side} blade of this bench`, dash: side === "left" ? [8, 6] : [2, 5], width: 2.5 } : { label: name.replace("_4_5", ", 4.5").replaceAll("_", " ") };
+}
+
 function forces() {
   const place = element("div", { class: "columns" });
   const refresh = async () => {
@@ -65,7 +71,7 @@ function forces() {
     if (!found) return;
     place.replaceChildren(...["drag", "lift"].map((kind) => {
       const names = Object.keys(found).filter((name) => name.endsWith(`_${kind}_n`));
-      const made = chart(`${kind} (N)`, "vehicle speed (m/s)", names.map((name) => ({ label: name.replace(`_${kind}_n`, "").replaceAll("_", " ") })), { y: "N", height: 200 });
+      const made = chart(`${kind} (N)`, "vehicle speed (m/s)", names.map((name) => airLine(name.replace(`_${kind}_n`, ""))), { y: "N", height: 200 });
       made.show([found.vehicle_speed_m_s, ...names.map((name) => found[name])]);
       return made;
     }));

@@ -25,7 +25,7 @@ export function generatePanel() {
   });
   return element("div", { class: "columns" },
     element("section", { class: "panel wide" }, element("h2", {}, "Bench and its files"), physical()),
-    element("section", { class: "panel" }, element("h2", {}, "Kinematic model and networks"), ...trainings, job.node, made),
+    element("section", { class: "panel" }, element("h2", {}, "Kinematic model and networks"), ...trainings, element("p", { class: "dim" }, "Own data are recordings that were given in Parameter Identification."), job.node, made),
     element("section", { class: "panel" }, element("h2", {}, "Benches with networks"), networks()),
     element("section", { class: "panel" }, element("h2", {}, "Run"), run()));
 }
@@ -34,12 +34,12 @@ export function generatePanel() {
 function ownData(what) {
   if (what === "torque") {
     const [data, validation] = ["data", "validation"].map((text) => choice([["", `own ${text} ...`]], { "aria-label": `${what} ${text}` }));
-    for (const select of [data, validation]) select.addEventListener("pointerdown", () => offer(select));
+    for (const select of [data, validation]) offer(select);
     return { node: element("span", {}, data, validation), chosen: () => ({ data: data.value || null, validation: validation.value || null }) };
   }
   if (what === "motor") {
     const [slow, fast] = ["slow", "fast"].map((mode) => choice([["", `own data, ${mode} ...`]], { "aria-label": `${what} ${mode}` }));
-    for (const select of [slow, fast]) select.addEventListener("pointerdown", () => offer(select));
+    for (const select of [slow, fast]) offer(select);
     const named = [[slow, "slow"], [fast, "fast"]];
     return { node: element("span", {}, slow, fast), chosen: () => ({ data: named.filter(([select]) => select.value).map(([select, mode]) => ({ name: select.value, mode })) }) };
   }

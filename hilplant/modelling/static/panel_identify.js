@@ -18,7 +18,7 @@ export function identifyPanel() {
   const [hold, also] = ["hold, such as force_n=7.6", "also look for"].map((text) => element("input", { placeholder: text, "aria-label": text, size: 20 }));
   const list = (input) => input.value.split(/[,;\s]+/).filter(Boolean);
   const order = (stages, resume) => ({
-    data: recordings.chosen("fit"), held_out: recordings.chosen("judge"), columns: recordings.mapped(), hold: list(hold), also: list(also), search: search.value, stages, resume,
+    data: recordings.chosen("fit"), held_out: recordings.chosen("judge"), columns: recordings.mapped(), frames: recordings.source(), hold: list(hold), also: list(also), search: search.value, stages, resume,
     date: new Date().toISOString().slice(0, 10), ...Object.fromEntries(settings.map(([key, input]) => [key, Number(input.value)])),
   });
   const start = (stages, resume = false) => { result.replaceChildren(); job.seen = null; job.ask("identify", order(stages, resume)); };
@@ -50,7 +50,7 @@ function show(place, answer) {
     rest.show([each.time_s, each.measured_a.map((value, index) => value - each.simulated_a[index])]);
     charts.push(both, rest);
   }
-  place.replaceChildren(element("div", { class: "row" }, accept, discard), element("div", { class: "scroll" }, element("table", {}, head, ...rows)), ...lines, element("div", { class: "columns" }, ...charts));
+  place.replaceChildren(element("div", { class: "row" }, accept, discard), element("table", {}, head, ...rows), ...lines, element("div", { class: "columns" }, ...charts));
 }
 
 function interval(each) {

@@ -2,6 +2,7 @@
 import { api } from "/shared/access.js";
 import { choice, element, figure } from "/shared/dom.js";
 import { chart } from "./chart.js";
+import { upload } from "./download.js";
 import { field, listen } from "./field.js";
 import { form, group, optionalGroup } from "./form.js";
 import { libraryChoice } from "./library.js";
@@ -15,7 +16,7 @@ const TYPES = [["digital", "Digital Park Switch"], ["mechanical", "Mechanical Pa
 
 export function motorPanel() {
   return element("div", { class: "columns" },
-    element("section", { class: "panel" }, element("h2", {}, "Motor"), libraryChoice("motor", "motors"), parameters()),
+    element("section", { class: "panel" }, element("h2", {}, "Motor"), libraryChoice("motor", "motors"), readings(), parameters()),
     element("section", { class: "panel" }, element("h2", {}, "Park switch"), motorType(), diagram(), reverse(), ...form(SWITCH, { skip: ["circuit", "reverse_angle_deg"] })),
     simulation(),
     element("section", { class: "panel" }, element("h2", {}, "Supply, wires, relays, heat"),
@@ -29,6 +30,31 @@ function heatStart() {
   const wanted = store.schemaAt(["plant", "heat"]);
   const usual = { winding_j_k: 50, case_j_k: 400, winding_to_case_w_k: 0.5, case_to_ambient_w_k: 0.4 };
   return Object.fromEntries((wanted.required || []).map((key) => [key, usual[key] ?? 1]));
+}
+
+// 5.4: readings on a bench, a data sheet or windings make the motor; files that they name are given with them.
+function readings() {
+  const files = element("input", { type: "file", multiple: true, accept: ".yaml,.yml,.csv", hidden: true, "aria-label": "readings or data sheet" });
+  const button = element("button", { id: "readings", title: "a YAML file as for hilplant motor, and the CSV files that it names (section 5.4)", onclick: () => files.click() }, "Motor from readings ...");
+  files.addEventListener("change", async () => {
+    try {
+      for (const file of files.files) await upload(file);
+      const name = [...files.files].map((each) => each.name).find((each) => /\.ya?ml$/i.test(each));
+      if (name) await store.change("readings", { name });
+      else store.say("readings are a YAML file, as for hilplant motor", true);
+    } catch (error) {
+      store.say(error.message, true);
+    }
+    files.value = "";
+  });
+  const errors = element("p", { class: "dim", id: "standard-errors" });
+  const refresh = () => {
+    const found = Object.entries(store.get([...MOTOR, "identified"])?.standard_errors || {});
+    errors.textContent = found.length ? `standard errors: ${found.map(([name, value]) => `${name} ${value.toPrecision(2)}`).join(", ")}` : "";
+  };
+  listen(errors, refresh);
+  refresh();
+  return element("div", {}, button, files, errors);
 }
 
 function parameters() {

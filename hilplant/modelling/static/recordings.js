@@ -6,18 +6,22 @@ import { upload } from "./download.js";
 import { store } from "./store.js";
 import { read } from "./units.js";
 
+const FRAMES = /\.(blf|asc|log|trc|mf4|mdf)$/i;
 const ROLES = ["time", "voltage", "current", "park", "fast", "on"];
 
 export class Recordings {
   constructor() {
     this.rows = element("tbody");
-    this.files = element("input", { type: "file", multiple: true, "aria-label": "recordings", accept: ".csv,.txt,.parquet,.mf4,.mdf,.hilrec,.blf,.asc,.log,.trc" });
+    this.files = element("input", { type: "file", multiple: true, "aria-label": "recordings", accept: ".csv,.txt,.parquet,.mf4,.mdf,.hilrec,.blf,.asc,.log,.trc,.dbc,.arxml,.kcd,.sym,.cdd" });
     this.files.addEventListener("change", () => this.give());
     this.mapping = element("div", { class: "row" });
     this.looked = element("div");
+    this.reader = choice([["", "choose ..."], ["bench", "the bus of this bench"]], { "aria-label": "what reads CAN frames" });
+    this.channel = element("input", { "aria-label": "channel of the log", placeholder: "channel, if several", size: 16 });
+    this.frames = element("div", { class: "row", hidden: true, id: "frames" }, element("label", {}, "CAN frames are read by", this.reader), this.channel, element("span", { class: "dim" }, "another database: give its file above"));
     this.columns = {};
     const head = element("tr", {}, ...["recording", "use", "screen", "mode", ""].map((text) => element("th", {}, text)));
-    this.node = element("div", {}, element("div", { class: "row" }, this.files, element("span", { class: "dim" }, "CSV, Parquet, MF4, recordings, CAN logs")),
+    this.node = element("div", {}, element("div", { class: "row" }, this.files, element("span", { class: "dim" }, "CSV, Parquet, MF4, recordings, CAN logs with their database")), this.frames,
       element("table", { id: "recordings" }, element("thead", {}, head), this.rows), this.mapping, this.looked);
     this.list();
   }
@@ -38,6 +42,11 @@ export class Recordings {
     const found = await api("recordings", {});
     const known = new Map([...this.rows.children].map((row) => [row.dataset.name, row]));
     this.rows.replaceChildren(...found.map(({ name }) => known.get(name) || this.row(name)));
+    const databases = (await api("databases", {})).map(({ name }) => name);
+    const fresh = databases.filter((name) => ![...this.reader.options].some((each) => each.value === name));
+    this.reader.append(...fresh.map((name) => element("option", { value: name }, name)));
+    if (fresh.length) this.reader.value = fresh.at(-1);
+    this.frames.hidden = !databases.length && !found.some(({ name }) => FRAMES.test(name));
   }
 
   row(name) {
@@ -56,6 +65,11 @@ export class Recordings {
       .filter(({ values }) => values[0] === use).map(({ name, values }) => ({ name, screen: values[1], mode: values[2] }));
   }
 
+  // What reads the frames of CAN logs, and the channel that is taken; empty where there are none.
+  source() {
+    return this.reader.value && (this.channel.value.trim() ? `${this.reader.value}@${this.channel.value.trim()}` : this.reader.value);
+  }
+
   // role=NAME[unit],... as the commands take it; empty where every column is found by its name.
   mapped() {
     return Object.entries(this.columns).filter(([, text]) => text).map(([role, text]) => `${role}=${text}`).join(",");
@@ -63,8 +77,8 @@ export class Recordings {
 
   async look(name, mode) {
     try {
-      this.map(name, mode, await api("columns", { name }));
-      this.draw(name, mode, await api("look", { name, mode, columns: this.mapped() }));
+      this.map(name, mode, await api("columns", { name, frames: this.source() }));
+      this.draw(name, mode, await api("look", { name, mode, columns: this.mapped(), frames: this.source() }));
       store.say("");
     } catch (error) {
       store.say(error.message, true);
@@ -94,7 +108,7 @@ export class Recordings {
     const [from, to] = [0, found.seconds].map((value) => element("input", { value: figure(value), inputmode: "decimal", size: 7 }));
     const cut = element("button", { onclick: async () => {
       try {
-        await api("cut", { name, mode, columns: this.mapped(), from_s: read(from.value), to_s: read(to.value) });
+        await api("cut", { name, mode, columns: this.mapped(), frames: this.source(), from_s: read(from.value), to_s: read(to.value) });
         await this.list();
       } catch (error) {
         store.say(error.message, true);
