@@ -76,7 +76,7 @@ ARROWS: dict[str, str] = {
     "perf": f"{_OFFLINE} simulation c_source",
     "testing": f"{_OFFLINE} channel simulation plots",
     "doctor": "extras jit",
-    "modelling": (f"{_OFFLINE} simulation measurements identify train plots reports inventory web channel"),
+    "modelling": (f"{_OFFLINE} simulation measurements motor_bench identify train plots reports inventory web channel"),
     "operator_page": f"{_OFFLINE} simulation channel companion web testing",
     "demo": f"{_OFFLINE} plots channel companion operator_page",
     "thesis": f"{_OFFLINE} simulation measurements motor_bench identify train plots reports perf c_source",
