@@ -8,6 +8,7 @@ import contextlib
 import logging
 import os
 import threading
+from collections import deque
 from typing import Any
 
 from hilplant.bus.arrival import waited_ns
@@ -51,9 +52,14 @@ def open_transport(arguments: dict[str, Any]) -> Transport:
     return PythonCan(arguments)
 
 
+def is_multicast(arguments: dict[str, Any]) -> bool:
+    """Say whether a bus is a multicast group."""
+    return bool(arguments.get("interface") == "udp_multicast")
+
+
 def interface_needs_udp(arguments: dict[str, Any]) -> bool:
     """Say whether an interface needs an optional library that is not installed."""
-    return arguments.get("interface") == "udp_multicast" and bool(missing("udp"))
+    return is_multicast(arguments) and bool(missing("udp"))
 
 
 class PythonCan:
@@ -64,6 +70,8 @@ class PythonCan:
         self._bus = _open(self._arguments)
         self._up = True
         self._reopening: _Reopening | None = None
+        # what comes back to its sender, in order: a multicast socket is the one interface that does not keep it away
+        self._coming_back: deque[Frame] | None = deque(maxlen=256) if is_multicast(arguments) else None
 
     @property
     def up(self) -> bool:
@@ -83,24 +91,34 @@ class PythonCan:
 
     def receive(self, limit: int) -> list[Frame]:
         """Return the frames that have arrived, at most `limit`."""
-        return [frame_of(message) for message in self._messages(limit)]
+        return [frame for frame, _ in self._received(limit)]
 
     def receive_late(self, limit: int) -> list[tuple[Frame, int | None]]:
         """Return the frames that have arrived, with how long they have waited, by the driver's stamps."""
-        messages = self._messages(limit)
-        return [(frame_of(message), waited_ns(round(message.timestamp * SECOND_NS))) for message in messages]
+        return [(frame, waited_ns(round(stamp_s * SECOND_NS))) for frame, stamp_s in self._received(limit)]
 
-    def _messages(self, limit: int) -> list[can.Message]:
-        messages: list[can.Message] = []
+    def _received(self, limit: int) -> list[tuple[Frame, float]]:
+        """Return frames of others and their stamps [s]."""
+        received: list[tuple[Frame, float]] = []
         try:
-            while self._up and len(messages) < limit:
+            while self._up and len(received) < limit:
                 message = self._bus.recv(0)
                 if message is None:
                     break
-                messages.append(message)
+                frame = frame_of(message)
+                if not (self._coming_back and self._is_own(frame, self._coming_back)):
+                    received.append((frame, message.timestamp))
         except Exception:  # drivers raise whatever their libraries raise
             self._up = False
-        return messages
+        return received
+
+    @staticmethod
+    def _is_own(frame: Frame, coming_back: deque[Frame]) -> bool:
+        if frame not in coming_back:
+            return False
+        while coming_back.popleft() != frame:  # those before it were lost on the way
+            pass
+        return True
 
     def send(self, frame: Frame) -> SendResult:
         """Hand a frame over to the driver; one that it does not take now counts as a full queue."""
@@ -115,6 +133,8 @@ class PythonCan:
         except Exception:  # the device is gone; see receive
             self._up = False
             return SendResult.DOWN
+        if self._coming_back is not None:
+            self._coming_back.append(frame)
         return SendResult.SENT
 
     def reopen(self) -> bool:
@@ -122,6 +142,8 @@ class PythonCan:
         if not self.up and self._reopening is None:
             self._reopening = _Reopening(self._bus, self._arguments)
             self._reopening.start()
+            if self._coming_back:
+                self._coming_back.clear()
         return self._up
 
     def close(self) -> None:

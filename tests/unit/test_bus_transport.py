@@ -19,12 +19,13 @@ from hilplant.bus.transport import PythonCan, SendResult, Transport, TransportEr
 WIPER = Path(__file__).parents[2] / "dbc" / "wiper.dbc"
 CHANNEL = "test_bus_transport"
 ARGUMENTS = {"interface": "virtual", "channel": CHANNEL}
+GROUP = {"interface": "udp_multicast", "channel": "239.74.163.7", "port": 43127, "fd": True}
 
 
-@pytest.fixture
-def pair() -> Iterator[tuple[Transport, Transport]]:
-    """Two ends of one in-memory bus."""
-    one, other = open_transport(ARGUMENTS), open_transport(ARGUMENTS)
+@pytest.fixture(params=[ARGUMENTS, GROUP], ids=["virtual", "multicast"])
+def pair(request: pytest.FixtureRequest) -> Iterator[tuple[Transport, Transport]]:
+    """Two ends of one bus, in memory and on a multicast group."""
+    one, other = open_transport(request.param), open_transport(request.param)
     yield one, other
     one.close()
     other.close()
@@ -64,6 +65,14 @@ def test_every_kind_of_frame_arrives_as_it_was_sent(pair: tuple[Transport, Trans
     assert sender.receive(10) == []  # nobody hears itself
 
 
+def test_a_frame_of_another_that_is_like_one_sent_here_arrives(pair: tuple[Transport, Transport]) -> None:
+    one, other = pair
+    alike = Frame(0x120, b"\x01")
+    for sender in (one, other, one):
+        sender.send(alike)
+    assert (one.receive(10), other.receive(10)) == ([alike], [alike, alike])
+
+
 def test_no_more_frames_are_taken_than_asked_for(pair: tuple[Transport, Transport]) -> None:
     sender, receiver = pair
     sent = [Frame(number, bytes([number])) for number in range(5)]
@@ -89,6 +98,7 @@ def test_the_drivers_stamp_tells_how_long_a_frame_has_waited_if_it_is_a_time_of_
     transport.close()
 
 
+@pytest.mark.parametrize("pair", [ARGUMENTS], indirect=True)
 def test_error_frames_are_marked(pair: tuple[Transport, Transport]) -> None:
     _, receiver = pair
     with can.Bus(interface="virtual", channel=CHANNEL) as raw:

@@ -132,7 +132,7 @@ def _say_start(bench: Bench, voice: Voice, privileges: list[Privilege]) -> None:
     voice.say(f"{bench.name} serves on {interface}, a tick every {step_ms:g} ms; Ctrl-C ends it")
     if bench.interface.get("interface") == "virtual":
         voice.say(
-            "  interface virtual: no other process can reach it; hilplant vcan, or udp_multicast, can be reached",
+            "  interface virtual: no other process can reach it; hilplant vcan, or the bench multicast, can be reached",
             err=True,
         )
     for line in missing:
