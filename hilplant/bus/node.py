@@ -119,18 +119,18 @@ class Node:
             self._flush()
 
     @property
-    def watched(self) -> tuple[list[int], list[float]]:
-        """The values by codec order whose change makes a message due, and what they were."""
-        return self._watched, self._last_watched
+    def send_due_ns(self) -> float:
+        """When a message is due if nothing changes."""
+        return -math.inf if self._pending else self._due_ns
 
-    def next_due_ns(self) -> float:
-        """Return when something is due if no frame comes and nothing watched changes; -inf where something waits."""
+    def next_loss_ns(self) -> float:
+        """Return when a message counts as lost if no frame comes; -inf where a frame waits or the link is down."""
         if self._pending or not (self._reopening.was_up and self._transport.up):
             return -math.inf
-        return min([self._due_ns, *(each.lost_at_ns for each in self._supervised if not each.is_missing)])
+        return min((each.lost_at_ns for each in self._supervised if not each.is_missing), default=math.inf)
 
     def skip(self, now_ns: int) -> None:
-        """Take it that up to now nothing has come and nothing was due."""
+        """Take it that up to now nothing has come and no message was lost."""
         self._emptied_ns = now_ns
 
     def send_all(self, values: Sequence[float]) -> None:

@@ -28,13 +28,13 @@ class RainStage(NamedTuple):
 def choose_stage(before: RainStage, rain: float, now_s: float, settings: RelaySettings) -> RainStage:
     """Return the stage after one look at the signal, 0 to 1; nan, a signal that is not known, keeps the stage."""
     if math.isnan(rain):
-        return before._replace(less_s=math.inf)
+        return RainStage(before.stage)
     wanted = sum(rain >= level for level in settings.rain_levels)
     if wanted >= before.stage:
         return RainStage(wanted)
     less_s = min(before.less_s, now_s)
     if now_s - less_s < settings.rain_hold_s:
-        return before._replace(less_s=less_s)
+        return RainStage(before.stage, less_s)
     return RainStage(before.stage - 1)
 
 

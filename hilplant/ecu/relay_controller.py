@@ -10,7 +10,7 @@ from hilplant.ecu.automatic import RainStage, choose_stage, demanded
 from hilplant.ecu.chart import EXITS, RESTING, SPEEDS, WIPING, Phase, Transition
 from hilplant.ecu.conditions import View
 from hilplant.ecu.sensing import Senses, sense
-from hilplant.ecu.vocabulary import RELAYS_OFF, EcuInputs, Fault, RelayCommand, RelaySettings
+from hilplant.ecu.vocabulary import RELAYS_OFF, EcuInputs, Fault, RelayCommand, RelaySettings, Stalk
 
 _RESTING, _WIPING = frozenset(RESTING), frozenset(WIPING)
 _HELD_UP = frozenset((Phase.BLIND, Phase.BROWN_OUT))
@@ -57,13 +57,13 @@ def take(
 ) -> tuple[ControllerState, Transition | None]:
     """Do what :func:`advance` does, and return the transition that was taken, None where the phase stays."""
     rain = choose_stage(state.rain, inputs.rain, now_s, settings)
-    state, inputs = state._replace(rain=rain), inputs._replace(stalk=demanded(inputs.stalk, rain, inputs.rain))
-    senses = sense(state.senses, inputs, now_s, settings)
-    if senses.arrived and state.leaving:
-        senses, state = senses._replace(arrived=False), state._replace(leaving=False)
+    senses, leaving = sense(state.senses, inputs, now_s, settings), state.leaving
+    if senses.arrived and leaving:
+        senses, leaving = senses._replace(arrived=False), False
     turned_s = now_s - state.turn_s
-    state = state._replace(senses=senses, turn_s=now_s if senses.arrived else state.turn_s)
-    view = _view(state, inputs, now_s, settings)
+    turn_s = now_s if senses.arrived else state.turn_s
+    state = state._replace(rain=rain, senses=senses, leaving=leaving, turn_s=turn_s)
+    view = _view(state, demanded(inputs.stalk, rain, inputs.rain), now_s, settings)
     row = next((row for row in EXITS[state.phase] if row.condition.holds(view)), None)
     if row is not None:
         state = _enter(state, row, view)
@@ -72,9 +72,9 @@ def take(
     return _forgive(state, turned_s, now_s, settings), row
 
 
-def _view(state: ControllerState, inputs: EcuInputs, now_s: float, settings: RelaySettings) -> View:
+def _view(state: ControllerState, stalk: Stalk, now_s: float, settings: RelaySettings) -> View:
     return View(
-        inputs.stalk,
+        stalk,
         state.senses,
         settings,
         now_s,

@@ -42,23 +42,24 @@ def sense(before: Senses, inputs: EcuInputs, now_s: float, settings: RelaySettin
     senses = _watch_contact(before, inputs.park_contact, now_s, settings)
     senses = _count_edges(senses, before.contact, now_s, settings)
     current_a = abs(inputs.current_a)  # nan is above nothing: unknown is not high
-    senses = senses._replace(
-        high_s=min(senses.high_s, now_s) if current_a > settings.stall_current_a else math.inf,
-        warm_s=min(senses.warm_s, now_s) if current_a > settings.warm_stall_current_a else math.inf,
-    )
+    high_s = min(senses.high_s, now_s) if current_a > settings.stall_current_a else math.inf
+    warm_s = min(senses.warm_s, now_s) if current_a > settings.warm_stall_current_a else math.inf
+    if (high_s, warm_s) != (senses.high_s, senses.warm_s):
+        senses = senses._replace(high_s=high_s, warm_s=warm_s)
     return _watch_supply(senses, inputs.supply_v, now_s, settings)
 
 
 def _watch_contact(before: Senses, contact: bool | None, now_s: float, settings: RelaySettings) -> Senses:
-    never = math.inf
-    if contact is None:
-        return before._replace(contact=None, opened_s=never, closed_s=never, away=False, arrived=False)
+    opened_s = closed_s = math.inf
+    away = arrived = False
     if contact:
-        closed_s = min(before.closed_s, now_s)
-        return before._replace(contact=True, opened_s=never, closed_s=closed_s, away=False, arrived=before.away)
-    opened_s = min(before.opened_s, now_s)
-    away = before.away or now_s - opened_s >= settings.debounce_s
-    return before._replace(contact=False, opened_s=opened_s, closed_s=never, away=away, arrived=False)
+        closed_s, arrived = min(before.closed_s, now_s), before.away
+    elif contact is not None:
+        opened_s = min(before.opened_s, now_s)
+        away = before.away or now_s - opened_s >= settings.debounce_s
+    if before[:5] == (contact, opened_s, closed_s, away, arrived):
+        return before
+    return before._replace(contact=contact, opened_s=opened_s, closed_s=closed_s, away=away, arrived=arrived)
 
 
 def _count_edges(senses: Senses, before: bool | None, now_s: float, settings: RelaySettings) -> Senses:

@@ -15,6 +15,8 @@ StalkSource = Callable[[float], Stalk]
 
 #: How long [s] a button is pressed: long enough to be seen in messages of 100 ms.
 PRESSES_S = {"flick": 0.3, "wash": 1.0}
+#: A time this close to a movement may be before or after it, by how it was rounded.
+_ROUNDING_S = 1e-6
 AUTOMATIC = "automatic"
 WORDS = (*(position.name.lower() for position in Master), *PRESSES_S, AUTOMATIC)
 _WRITTEN = re.compile(r"([a-z]*)([0-9]*)")
@@ -97,6 +99,27 @@ def stalk_at(turns: tuple[StalkTurn, ...], elapsed_s: float) -> Stalk:
             break
         stalk = moved(stalk, turn.move, elapsed_s - turn.time_s)
     return stalk
+
+
+class PlayedStalk:
+    """The stalk as a file says, asked at times that do not run backwards; worked out anew only when it may move."""
+
+    def __init__(self, turns: tuple[StalkTurn, ...]) -> None:
+        self._turns = turns
+        starts = {turn.time_s for turn in turns}
+        ends = {turn.time_s + PRESSES_S[turn.move.press] for turn in turns if turn.move.press is not None}
+        self._moves_s = sorted(starts | ends, reverse=True)
+        self._stalk: Stalk | None = None
+
+    def __call__(self, elapsed_s: float) -> Stalk:
+        """Return the stalk at a time [s] since the start."""
+        moves_s = self._moves_s
+        near = bool(moves_s) and elapsed_s > moves_s[-1] - _ROUNDING_S
+        if near or self._stalk is None:
+            self._stalk = stalk_at(self._turns, elapsed_s)
+            while moves_s and elapsed_s > moves_s[-1] + _ROUNDING_S:
+                moves_s.pop()
+        return self._stalk
 
 
 def moved(stalk: Stalk, move: Move, ago_s: float) -> Stalk:

@@ -21,14 +21,18 @@ class Tape:
 
     def next_row(self) -> Floats:
         """Return the row to fill."""
-        if self.ticks == len(self._rows):
-            self._rows = np.concatenate([self._rows, np.zeros_like(self._rows)])
-        row: Floats = self._rows[self.ticks]
+        row: Floats = self.next_rows(1)[0]
         return row
 
-    def commit(self) -> None:
-        """Keep the row."""
-        self.ticks += 1
+    def next_rows(self, count: int) -> Floats:
+        """Return the rows to fill."""
+        while self.ticks + count > len(self._rows):
+            self._rows = np.concatenate([self._rows, np.zeros_like(self._rows)])
+        return self._rows[self.ticks : self.ticks + count]
+
+    def commit(self, count: int = 1) -> None:
+        """Keep the rows."""
+        self.ticks += count
 
     def write_frame(self, tick: int, bus_ns: int, frame: Frame, sent: bool) -> None:
         """Keep a frame."""

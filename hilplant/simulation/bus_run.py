@@ -36,13 +36,13 @@ class _Outputs(Tape):
         self.outputs = np.empty((ticks, len(OUTPUTS)))
         self.counted: Counter[tuple[int, int, bool]] = Counter()
 
-    def next_row(self) -> Floats:
-        row: Floats = self._rows[0]
-        return row
+    def next_rows(self, count: int) -> Floats:
+        return self._rows[:count]
 
-    def commit(self) -> None:
-        self.outputs[self.ticks] = self._rows[0, _FIRST_OUTPUT : _FIRST_OUTPUT + len(OUTPUTS)]
-        self.ticks += 1
+    def commit(self, count: int = 1) -> None:
+        outputs = self._rows[:count, _FIRST_OUTPUT : _FIRST_OUTPUT + len(OUTPUTS)]
+        self.outputs[self.ticks : self.ticks + count] = outputs
+        self.ticks += count
 
     def write_frame(self, tick: int, bus_ns: int, frame: Frame, sent: bool) -> None:
         self.counted[frame.identifier, len(frame.data), sent] += 1

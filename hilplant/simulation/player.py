@@ -147,7 +147,7 @@ class Commander:
 
     def next_due_ns(self) -> float:
         """Return when a message is due."""
-        return self._node.next_due_ns()
+        return self._node.send_due_ns
 
     def send(self, now_ns: int) -> None:
         """Send what is due."""

@@ -13,7 +13,7 @@ from hilplant.bench.assembly import initial_state
 from hilplant.bus.in_memory import InMemoryBus
 from hilplant.ecu.node import EcuNode
 from hilplant.ecu.settings import controller_settings
-from hilplant.ecu.stalk import stalk_at
+from hilplant.ecu.stalk import PlayedStalk
 from hilplant.faults.acting import ActingFaults
 from hilplant.faults.timing import Course
 from hilplant.faults.written import FaultEntry
@@ -45,7 +45,7 @@ class VirtualBench:
         self.bench, self.bus, self.tape = bench, InMemoryBus(), Tape()
         self._plant_end = self.bus.end()
         acting = ActingFaults(bench, self._plant_end)
-        self._stalk = scenario.stalk if scenario is not None else ()
+        self._stalk = PlayedStalk(scenario.stalk if scenario is not None else ())
         self._loop = VirtualLoop(bench, build_node(bench, acting.transport), self.tape)
         intake = self._loop.listen(None, self.tape.events.append, acting)
         #: The faults of the loop; they take more.
@@ -73,7 +73,7 @@ class VirtualBench:
     def step(self, most: int = 1) -> int:
         """Take one tick: the scenario's hand, the plant, and the ECU when it is its turn; returns how many were taken.
 
-        Of ticks in which nothing but the plant's step is due it takes several, `most` at the most.
+        Of ticks in which nothing comes in it takes several, `most` at the most.
         """
         most = min(most, -self.tape.ticks % self._poll_ticks + 1)
         player_ns = math.inf if self.player is None else self.player.next_due_ns()
@@ -89,7 +89,7 @@ class VirtualBench:
         last = self.tape.ticks - 1
         if self.ecu is not None and last % self._poll_ticks == 0:
             last_ns = last * self.bench.step_ns
-            self.ecu.poll(last_ns, stalk_at(self._stalk, (last_ns - self._start_ns) / SECOND_NS))
+            self.ecu.poll(last_ns, self._stalk((last_ns - self._start_ns) / SECOND_NS))
 
     @property
     def _start_ns(self) -> int:

@@ -60,13 +60,13 @@ def test_lively_runs_are_as_tick_by_tick(bench: Bench, tmp_path: Path) -> None:
     assert len(quiet.tape.events) > 6
 
 
-def test_most_ticks_at_rest_are_quiet(bench: Bench) -> None:
+def test_many_ticks_are_taken_at_once(bench: Bench) -> None:
     """Else nothing is compared above."""
     virtual, calls = VirtualBench(bench), 0
     while virtual.ticks < 1000:
         virtual.step(1000 - virtual.ticks)
         calls += 1
-    assert calls < 600
+    assert calls < 300
 
 
 def test_a_test_that_lets_time_pass_sees_what_single_ticks_show(bench: Bench) -> None:

@@ -4,7 +4,16 @@ import os
 
 import pytest
 
-from hilplant.ecu.stalk import PRESSES_S, StalkError, TypedStalk, move_named, parse_stalk, stalk_at, stalk_words
+from hilplant.ecu.stalk import (
+    PRESSES_S,
+    PlayedStalk,
+    StalkError,
+    TypedStalk,
+    move_named,
+    parse_stalk,
+    stalk_at,
+    stalk_words,
+)
 from hilplant.ecu.vocabulary import Master, Stalk
 
 
@@ -22,6 +31,14 @@ def test_a_sequence_is_read_in_order_with_names_or_their_beginnings():
         (14.0, None, None, "flick"),
         (15.0, None, None, "wash"),
     ]
+
+
+@pytest.mark.parametrize("text", ["0:off", "0.1:slow,0.3:flick,0.5:fast,0.7:wash,1.6:i3", "0.2:wash,0.4:flick"])
+@pytest.mark.parametrize("step_s", [0.001, 0.005, 0.1])
+def test_a_played_sequence_is_at_each_time_where_it_is_when_asked_once(text: str, step_s: float) -> None:
+    turns = parse_stalk(text)
+    played, times_s = PlayedStalk(turns), [index * step_s for index in range(-1, round(2.0 / step_s))]
+    assert [played(time_s) for time_s in times_s] == [stalk_at(turns, time_s) for time_s in times_s]
 
 
 def test_a_position_holds_until_the_next_and_is_off_before_the_first():
