@@ -142,7 +142,8 @@ def _path(name: str | None) -> Path | None:
 
 def _report(made: TrainingReport, order: Order) -> Answer:
     files = sorted(path.name for path in Path(order["out"]).iterdir() if path.is_file())
-    return {"lines": made.lines, "figures": made.figures, "kept": made.kept, "files": files}
+    lines = [line.replace(f"{order['out']}/", "") for line in made.lines]
+    return {"lines": lines, "figures": made.figures, "kept": made.kept, "files": files}
 
 
 WORKS: dict[str, Callable[[Order, OnProgress], Answer]] = {

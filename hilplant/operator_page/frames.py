@@ -12,7 +12,10 @@ from hilplant.runtime.follower import Follower
 from hilplant.runtime.frame_slot import ERROR, EXTENDED, REMOTE, SENT
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
-_PERIODS = 200
+#: The last periods of a message of which mean and jitter are told.
+MOST_PERIODS = 200
+#: Identifier, whether it is extended, whether the plant sent it.
+FrameKey = tuple[int, bool, bool]
 
 
 @dataclass
@@ -23,7 +26,7 @@ class Heard:
     time_ns: int = 0
     data: bytes = b""
     flags: int = 0
-    periods_ns: deque[int] = field(default_factory=lambda: deque(maxlen=_PERIODS))
+    periods_ns: deque[int] = field(default_factory=lambda: deque(maxlen=MOST_PERIODS))
 
     def take(self, time_ns: int, data: bytes, flags: int) -> None:
         """Take a frame."""
@@ -33,11 +36,10 @@ class Heard:
 
 
 class FrameTable:
-    """All frames of a run by identifier and direction."""
+    """All frames of a run by identifier and direction; the bench's database names and decodes them."""
 
-    def __init__(self, ring: str, bench: Bench) -> None:
-        """Follow a run from now on; its database names and decodes the frames."""
-        self._follower = Follower(ring)
+    def __init__(self, bench: Bench) -> None:
+        """Begin without a frame."""
         database = database_among(bench.sources)
         messages = database.messages if database is not None else []
         self._messages = {(message.frame_id, message.is_extended_frame): message for message in messages}
@@ -45,32 +47,21 @@ class FrameTable:
         status = bench.description.ecu.send or {}
         links = [link for entry in status.values() for link in entry.signals.items()]
         self._status = {signal: each.signal for signal, entries in links for each in entries}
-        self._heard: dict[tuple[int, bool, bool], Heard] = {}
-        self.lost = 0
-
-    def look(self) -> None:
-        """Take in what is new."""
-        taken = self._follower.frames()
-        self.lost += taken.lost
-        for frame in taken.records:
-            _, time_ns, identifier, flags, length, _, data = frame.item()
-            key = (identifier, bool(flags & EXTENDED), bool(flags & SENT))
-            content = np.asarray(data, np.uint8)[:length].tobytes()
-            self._heard.setdefault(key, Heard()).take(time_ns, content, flags)
+        self.heard: dict[FrameKey, Heard] = {}
 
     def rows(self, now_s: float) -> list[dict[str, Any]]:
         """Return a row for each message, in the order of direction and identifier."""
-        return [self._row(key, self._heard[key], now_s) for key in sorted(self._heard, key=lambda key: (key[2], key))]
+        return [self._row(key, self.heard[key], now_s) for key in sorted(self.heard, key=lambda key: (key[2], key))]
 
     def ecu(self) -> dict[str, float]:
         """Return what the ECU has told last of itself, by the names of ``signals.ECU_STATUS``."""
         told: dict[str, float] = {}
-        for (identifier, extended, _), heard in self._heard.items():
+        for (identifier, extended, _), heard in self.heard.items():
             values = self._decoded(self._messages.get((identifier, extended)), heard.data, labels=False)
             told |= {self._status[name]: float(value) for name, value in values.items() if name in self._status}
         return told
 
-    def _row(self, key: tuple[int, bool, bool], heard: Heard, now_s: float) -> dict[str, Any]:
+    def _row(self, key: FrameKey, heard: Heard, now_s: float) -> dict[str, Any]:
         identifier, extended, sent = key
         message = self._messages.get((identifier, extended))
         periods = np.array(heard.periods_ns, np.float64) / MILLISECOND_NS
@@ -96,6 +87,26 @@ class FrameTable:
         except Exception:  # cantools raises its own kinds, and those of what it is made of
             return {}
         return found
+
+
+class LiveFrames(FrameTable):
+    """The frames of a run that goes on."""
+
+    def __init__(self, ring: str, bench: Bench) -> None:
+        """Follow a run from now on."""
+        super().__init__(bench)
+        self._follower = Follower(ring)
+        self.lost = 0
+
+    def look(self) -> None:
+        """Take in what is new."""
+        taken = self._follower.frames()
+        self.lost += taken.lost
+        for frame in taken.records:
+            _, time_ns, identifier, flags, length, _, data = frame.item()
+            key = (identifier, bool(flags & EXTENDED), bool(flags & SENT))
+            content = np.asarray(data, np.uint8)[:length].tobytes()
+            self.heard.setdefault(key, Heard()).take(time_ns, content, flags)
 
 
 def _shown(value: Any) -> Any:

@@ -7,6 +7,7 @@ import numpy as np
 
 from hilplant.arrays import Floats
 from hilplant.channel.run_files import columns
+from hilplant.declaration import Signal
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.runtime.commands import APPLIED, COMES, KINDS, OUTCOMES, OWNERS, ChannelCommand
 from hilplant.runtime.follower import Follower
@@ -17,7 +18,7 @@ MOST = 500
 _LATE_TICKS = 10_000
 _PARAMETERS = list(PARAMETER_INDEX)
 #: Counts whose change is no event.
-_QUIET = ("tick", "worst_latency_us")
+QUIET = ("tick", "worst_latency_us")
 
 
 class Happenings:
@@ -69,9 +70,8 @@ class Happenings:
         elif kind in ("comes", "goes"):
             what = self._fault(event)
         by = OWNERS[event.owner] if event.owner < len(OWNERS) else ""
-        outcome = "" if event.outcome == 0 else f": {OUTCOMES[event.outcome]}"
-        words = f"{by} {kind} {what}".strip() + outcome
-        return self.add(event.time_ns / SECOND_NS, "refused" if event.outcome else kind, f"{words}, tick {event.tick}")
+        said = command_words(kind, f"{by} {kind} {what}", OUTCOMES[event.outcome], event.tick)
+        return self.add(event.time_ns / SECOND_NS, *said)
 
     def _fault(self, event: ChannelCommand) -> str:
         """Keep in mind which faults are there; return the fault in words."""
@@ -93,12 +93,21 @@ class Happenings:
         for signal in STATUS:
             at = self._places[f"status.{signal.name}"]
             before, now = self._before[at], row[at]
-            if before == now or signal.name in _QUIET:
-                continue
-            if signal.name == "mode":
-                found.append(("mode", f"mode {MODES[int(before)]} -> {MODES[int(now)]}"))
-            elif signal.kind == "choice":
-                found.append(("status", f"{signal.name} {signal.choices[int(before)]} -> {signal.choices[int(now)]}"))
-            else:
-                found.append(("count", f"{signal.name} {before:g} -> {now:g}: {signal.meaning}"))
+            if before != now and signal.name not in QUIET:
+                found.append(status_words(signal, before, now))
         return found
+
+
+def command_words(kind: str, said: str, outcome: str, tick: int) -> tuple[str, str]:
+    """Return the kind and the words of a command that came to this outcome."""
+    refused = "" if outcome == OUTCOMES[APPLIED] else f": {outcome}"
+    return "refused" if refused else kind, f"{said.strip()}{refused}, tick {tick}"
+
+
+def status_words(signal: Signal, before: float, now: float) -> tuple[str, str]:
+    """Return the kind and the words of a change in what the loop tells of itself."""
+    if signal.name == "mode":
+        return "mode", f"mode {MODES[int(before)]} -> {MODES[int(now)]}"
+    if signal.kind == "choice":
+        return "status", f"{signal.name} {signal.choices[int(before)]} -> {signal.choices[int(now)]}"
+    return "count", f"{signal.name} {before:g} -> {now:g}: {signal.meaning}"

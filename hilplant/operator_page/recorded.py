@@ -1,9 +1,12 @@
 """A recording on the operator's screen: the same widgets at a cursor in time, the plots over any stretch."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
 
 from hilplant.arrays import Floats
 from hilplant.bench import Bench
@@ -12,6 +15,8 @@ from hilplant.failure import Failure
 from hilplant.operator_page.blocks import NEWEST, STRETCH, block
 from hilplant.operator_page.envelope import of_points
 from hilplant.operator_page.live import MOST_POINTS, MOST_SIGNALS
+from hilplant.operator_page.recorded_events import events_of, faults_at
+from hilplant.operator_page.recorded_frames import RecordedFrames
 from hilplant.recording.format import SIGNAL_COLUMNS
 from hilplant.recording.reader import read_recording
 from hilplant.recording.span import Span
@@ -36,9 +41,13 @@ class RecordedRows:
         """
         recording = read_recording(path).within(span)
         names = ["tick", "deadline_ns", *SIGNAL_COLUMNS]
-        pieces, count = [], 0
+        pieces, frames, count = [], [], 0
+        #: What became of each command, with its tick, as the recording has it.
+        self.commands: list[dict[str, Any]] = []
         for batch in recording.batches():
             piece = np.column_stack([batch.column(name).to_numpy(zero_copy_only=False) for name in names])
+            frames.append(batch.column("frames").flatten())
+            self.commands += _commands(batch)
             pieces.append(piece[np.isfinite(piece[:, 1].astype(np.float64))].astype(np.float64))
             count += len(pieces[-1])
             if count > MOST_ROWS:
@@ -46,6 +55,7 @@ class RecordedRows:
         if not count:
             raise Failure(f"{path}: holds no tick to show")
         self.rows: Floats = np.vstack(pieces)
+        self.frames = pa.concat_arrays(frames)
         self.times_s: Floats = self.rows[:, 1] / SECOND_NS
         self.run = recording.run
         self.notes = list(recording.notes)
@@ -63,10 +73,17 @@ class RecordedRows:
             raise ValueError(f"at most {MOST_SIGNALS} signals, not {len(names)}")
         first, last = np.searchsorted(self.times_s, span_s)
         part = self.rows[first:last]
-        values = part[:, [self._place(name) for name in names]]
+        values = part[:, [self.place(name) for name in names]]
         return of_points(part[:, 0], self.times_s[first:last], values, min(points, MOST_POINTS))
 
-    def _place(self, name: str) -> int:
+    def events(self) -> list[dict[str, Any]]:
+        """Return what happened, in words."""
+        names = [name for name in self._places if name.startswith("status.")]
+        status = {name.removeprefix("status."): self.rows[:, self._places[name]] for name in names}
+        return events_of(self.commands, self.times_s, status)
+
+    def place(self, name: str) -> int:
+        """Return the column of a signal."""
         for candidate in (name, f"out.{name}", f"status.{name}", f"in.{name}"):
             if candidate in self._places:
                 return self._places[candidate]
@@ -76,16 +93,17 @@ class RecordedRows:
 class RecordedScreen:
     """All browsers that look at one recording; nobody drives anything."""
 
-    def __init__(self, path: Path, rows: RecordedRows, access: Access) -> None:
-        """Show a recording."""
+    def __init__(self, path: Path, rows: RecordedRows, bench: Bench, access: Access) -> None:
+        """Show a recording; the bench's database names and decodes its frames."""
         self._path, self._rows, self._access = path, rows, access
+        self._frames, self._events = RecordedFrames(bench, rows.frames), rows.events()
 
     async def serve(self, visitor: Visitor) -> None:
         """Serve a browser until it goes."""
         times = self._rows.times_s
         span = {"name": self._path.name, "from_s": float(times[0]), "to_s": float(times[-1])}
-        await visitor.tell({"told": "hello", "page": 1, "events": []})
         await visitor.tell({"told": "state", "lead": None, "asking": [], "recorded": span, "stalk": False})
+        await visitor.tell({"told": "hello", "page": 1, "events": self._events})
         async for message in visitor.messages():
             try:
                 await self._answer(visitor, message)
@@ -102,10 +120,23 @@ class RecordedScreen:
         elif wanted == "at":
             empty = (np.empty(0), np.empty((0, 0)))
             await visitor.give(block(NEWEST, 0, empty, self._rows.at(float(message["time_s"]))))
+            await self._tell_moment(visitor, float(message["time_s"]))
         elif wanted not in ("view", "alive"):
             raise ValueError("this is a recording: nothing can be changed")
         if number is not None:
             await visitor.tell({"id": number, "selection": 0})
+
+    async def _tell_moment(self, visitor: Visitor, time_s: float) -> None:
+        """Tell the frames, what the ECU had told, and the faults at a time."""
+        self._frames.look(time_s)
+        await visitor.tell({"told": "faults", "faults": faults_at(self._rows.commands, time_s)})
+        await visitor.tell({"told": "frames", "rows": self._frames.rows(time_s), "ecu": self._frames.ecu()})
+
+
+def _commands(batch: pa.RecordBatch) -> Iterator[dict[str, Any]]:
+    ticks, events = batch.column("tick"), batch.column("events")
+    for place in np.flatnonzero(pc.list_value_length(events).to_numpy() > 0):
+        yield from ({**each, "tick": ticks[place].as_py()} for each in events[place].as_py())
 
 
 def differs(rows: RecordedRows, bench: Bench) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 from hilplant.bench import Bench
 from hilplant.channel.run_files import RunFile
 from hilplant.failure import Failure
-from hilplant.operator_page.frames import FrameTable
+from hilplant.operator_page.frames import LiveFrames
 from hilplant.operator_page.happenings import Happenings
 from hilplant.operator_page.lead import LeadHolder
 from hilplant.operator_page.live import LiveRows, Selection
@@ -32,7 +32,7 @@ class RunParts:
 
     bench: Bench
     stalk: StalkOfLines | StalkOnBus | None
-    frames: FrameTable
+    frames: LiveFrames
     logs: Path
 
 

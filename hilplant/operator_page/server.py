@@ -24,7 +24,7 @@ from hilplant.companion import READY
 from hilplant.failure import Failure
 from hilplant.operator_page.beside_run import STALK_AS_LINES, STALK_ON_BUS
 from hilplant.operator_page.datagrams import Datagrams
-from hilplant.operator_page.frames import FrameTable
+from hilplant.operator_page.frames import LiveFrames
 from hilplant.operator_page.metrics import CONTENT_TYPE, metrics
 from hilplant.operator_page.screen import RunParts, Screen
 from hilplant.operator_page.stalk import StalkOfLines, StalkOnBus
@@ -53,7 +53,7 @@ async def keep(order: dict[str, Any]) -> None:
     bench = replace(bench, interface=order["interface"])
     stalk = _stalk(order["stalk"], bench)
     datagrams = Datagrams(run.ring, order["stream"]) if order["stream"] else None
-    screen = Screen(run, access, RunParts(bench, stalk, FrameTable(run.ring, bench), Path(order["logs"])))
+    screen = Screen(run, access, RunParts(bench, stalk, LiveFrames(run.ring, bench), Path(order["logs"])))
 
     @contextlib.asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:

@@ -3,14 +3,25 @@
 import csv
 from collections.abc import Iterator
 from itertools import pairwise
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, expect
+from web.chromium import page_of
 from web.plant_with_page import PlantWithPage, control, plant_with_page, shown, until
+from web.served import served
 
+from hilplant.bench import load_bench
+from hilplant.bus.database import database_among
+from hilplant.operator_page.description import describe
+from hilplant.operator_page.recorded import RecordedRows, RecordedScreen
+from hilplant.operator_page.server import operator_page
 from hilplant.recording.reader import read_recording
 from hilplant.recording.replay import replay
+from hilplant.recording.span import EVERYTHING
+from hilplant.web.access import Access
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
@@ -25,6 +36,11 @@ def plant(tmp_path_factory: pytest.TempPathFactory) -> Iterator[PlantWithPage]:
 def page(browser: Browser, plant: PlantWithPage) -> Iterator[Page]:
     with shown(browser, plant) as opened:
         yield opened
+
+
+def frames_of(path: Path) -> list[dict[str, Any]]:
+    tables = read_recording(path).table(["frames"]).column(0).to_pylist()
+    return [frame for frames in tables for frame in frames]
 
 
 def test_a_table_begins_before_its_trigger_and_has_every_tick(page: Page, plant: PlantWithPage) -> None:
@@ -52,7 +68,9 @@ def test_a_table_begins_before_its_trigger_and_has_every_tick(page: Page, plant:
     assert set(rows[0]) == {"time_s", "in_supply_v", "current_a", "park_contact"}
 
 
-def test_a_recording_of_the_page_replays_bit_for_bit(page: Page, plant: PlantWithPage) -> None:
+@pytest.fixture(scope="module")
+def drive(page: Page, plant: PlantWithPage) -> Path:
+    """A recording that was started on the page: off, slow, off."""
     page.locator("#log-file").fill("drive.hilrec")
     page.locator("#log-start").click()
     expect(page.locator("#log-state")).to_have_text("recording")
@@ -63,9 +81,44 @@ def test_a_recording_of_the_page_replays_bit_for_bit(page: Page, plant: PlantWit
     page.locator("#stalk-off").click()
     page.locator("#log-stop").click()
     expect(page.locator("#log-state")).not_to_have_text("recording")
-    path = plant.logs / "drive.hilrec"
-    assert replay(path).equal
-    assert max(read_recording(path).table(["out.current_a"]).column(0).to_pylist()) > 0.5
+    return plant.logs / "drive.hilrec"
+
+
+def test_a_recording_of_the_page_replays_bit_for_bit(drive: Path) -> None:
+    assert replay(drive).equal
+    assert np.nanmax(read_recording(drive).table(["out.current_a"]).column(0).to_numpy()) > 0.5
+
+
+def test_a_recording_shows_frames_ecu_and_events_at_the_cursor(browser: Browser, drive: Path) -> None:
+    rows, bench, access = RecordedRows(drive, EVERYTHING), load_bench("virtual"), Access()
+    current = rows.rows[:, rows.place("current_a")]
+    turning_s = float(rows.times_s[int(np.argmax(current > 0.5))])
+    recorded = operator_page(describe(bench), RecordedScreen(drive, rows, bench, access).serve)
+    with served(recorded, access) as url, page_of(browser) as page:
+        page.goto(f"{url}#token={access.token}")
+        moment = page.locator("#moment")
+        expect(moment).to_be_visible()
+
+        def show(time_s: float) -> None:
+            moment.evaluate("(node, at) => { node.value = at; node.dispatchEvent(new Event('input')); }", time_s)
+
+        show(turning_s + 0.2)
+        page.locator("#tab-frames").click()
+        values = page.locator("#frames tr[data-message=MotorStatus] .values")
+        expect(values).to_contain_text("MotorCurrent")
+        until_ns = (turning_s + 0.2) * 1e9
+        sent = [each for each in frames_of(drive) if each["identifier"] == 0x200 and each["time_ns"] <= until_ns]
+        database = database_among(bench.sources)
+        assert database is not None
+        decoded = database.get_message_by_frame_id(0x200).decode(sent[-1]["data"])
+        expect(values).to_contain_text(f"MotorCurrent {decoded['MotorCurrent']:.5g}")
+        expect(page.locator("#frames tr[data-message=MotorStatus] td").nth(5)).to_have_text(str(len(sent)))
+        page.locator("#tab-ecu").click()
+        expect(page.locator("#ecu-live")).to_have_text("slow")
+        page.locator("#tab-events").click()
+        begun = page.locator("#events li", has_text="hand recording").last
+        begun.locator("button").click()
+        expect(page.locator("#moment-told")).to_contain_text(begun.locator("button").inner_text().split()[0])
 
 
 @pytest.mark.parametrize("name", ["../outside.csv", "/tmp/outside.csv", "a/b.csv", "..", ".hidden.csv", "edge.txt", ""])

@@ -36,5 +36,5 @@ def show_recording(path: Path, bench_name: str | None, span: Span, where: tuple[
         if browser:
             open_browser(url)
 
-    page = operator_page(describe(bench), RecordedScreen(path, rows, access).serve)
+    page = operator_page(describe(bench), RecordedScreen(path, rows, bench, access).serve)
     asyncio.run(serve(application(page, access), access, address, ready))

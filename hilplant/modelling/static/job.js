@@ -3,6 +3,8 @@ import { api } from "/shared/access.js";
 import { element, figure } from "/shared/dom.js";
 import { store } from "./store.js";
 
+const count = (value) => (Number.isInteger(value) ? value : figure(value));
+
 export class JobView {
   constructor(works, ended) {
     this.works = works;
@@ -41,7 +43,7 @@ export class JobView {
     if (state.state === "running" && done === undefined) this.bar.removeAttribute("value");
     else this.bar.value = state.state === "done" ? this.bar.max : done || 0;
     this.stop.disabled = state.state !== "running";
-    this.told.textContent = `${state.work}: ${state.state}${stage && state.state === "running" ? `, ${stage} ${figure(done)} of ${figure(total)}` : ""}${note ? `, ${note}` : ""}${state.text ? `: ${state.text}` : ""}`;
+    this.told.textContent = `${state.work}: ${state.state}${stage && state.state === "running" ? `, ${stage} ${count(done)} of ${count(total)}` : ""}${note ? `, ${note}` : ""}${state.text ? `: ${state.text}` : ""}`;
     this.told.classList.toggle("bad", state.state === "failed");
     const mark = `${state.work} ${state.state}`;
     if (mark !== this.seen && state.state !== "running") this.ended(state);

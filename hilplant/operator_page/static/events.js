@@ -1,7 +1,7 @@
 // The event log: commands with their outcome, modes, faults of the bus, logs; the newest on top.
 import { element } from "/shared/dom.js";
 
-const MOST = 300;
+const MOST = 1000;
 
 export function events(session) {
   const list = element("ol", { class: "events", id: "events", "aria-live": "off" });
@@ -13,7 +13,10 @@ export function events(session) {
       if (each.number <= newest) continue;
       newest = each.number;
       const bad = ["refused", "count"].includes(each.kind);
-      list.prepend(element("li", { class: bad ? "wrong" : "" }, element("span", { class: "figure dim" }, `${each.time_s.toFixed(3)} s `), each.words));
+      const at = element("button", { class: "figure", title: "show this moment", onclick: () => dispatchEvent(new CustomEvent("momentset", { detail: each.time_s })) });
+      const time = session.recorded ? at : element("span", { class: "figure dim" });
+      time.append(`${each.time_s.toFixed(3)} s `);
+      list.prepend(element("li", { class: bad ? "wrong" : "" }, time, each.words));
     }
     while (list.children.length > MOST) list.lastChild.remove();
   });

@@ -7,7 +7,7 @@ export function faults(session) {
   const list = element("select", { id: "fault-list", size: 11, "aria-label": "faults" });
   const about = element("p", { class: "dim" });
   const fields = element("div", { class: "row" });
-  const lasting = number("for s", "until removed");
+  const lasting = number("for s", "no end");
   const later = number("in s", "at once");
   const ramp = number("ramp s", "none");
   const insert = element("button", { id: "fault-insert", onclick: put }, "Insert");

@@ -27,7 +27,9 @@ export function frames(session) {
   }
 
   session.addEventListener("frames", (event) => {
-    if (!node.offsetParent) return;
+    if (!session.recorded && !node.offsetParent) return; // of a recording no other will come
+    const there = new Set(event.detail.rows.map((told) => `${told.id} ${told.from}`));
+    for (const [key, { node: line }] of rows) if (!there.has(key)) line.remove(), rows.delete(key);
     for (const told of event.detail.rows) {
       const { cells, node: line } = rowOf(told);
       const values = Object.entries(told.values).map(([name, value]) => `${name} ${typeof value === "number" ? +value.toPrecision(5) : value}`);

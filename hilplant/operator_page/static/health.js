@@ -53,7 +53,7 @@ export function health(session) {
 
   session.addEventListener("row", row);
   session.addEventListener("state", state);
-  session.addEventListener("frames", (event) => say(p99, `p99 ${event.detail.late_p99_us} µs`));
+  session.addEventListener("frames", (event) => say(p99, `p99 ${event.detail.late_p99_us ?? "-"} µs`));
   session.addEventListener("stale", (event) => {
     banner.hidden = event.detail === "";
     say(banner, `No new data since ${samples.timeS.toFixed(1)} s: ${event.detail}. What you see is old; controls are off.`);

@@ -60,7 +60,7 @@ export function logger(session, plots) {
   file.addEventListener("input", shape);
   way.addEventListener("change", shape);
   session.addEventListener("state", () => show(session.state.log || { state: "off" }));
-  session.addEventListener("frames", (event) => { if (session.state.log?.state !== "recording") show(event.detail.log); });
+  session.addEventListener("frames", (event) => { if (event.detail.log && session.state.log?.state !== "recording") show(event.detail.log); });
   shape();
   return element("section", { class: "panel", "aria-label": "Data logger" }, element("h2", {}, "Data logger", state),
     element("div", { class: "row" }, file, start, stop), table, told);

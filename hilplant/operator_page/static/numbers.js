@@ -25,5 +25,5 @@ function words(signal, value) {
   if (signal.kind === "choice") return signal.choices[value] || "-";
   if (signal.kind === "flag") return value ? "1" : "0";
   const more = MORE[signal.name];
-  return figure(value, signal.unit) + (more ? `  ${more(value)}` : "");
+  return figure(value, signal.unit) + (more ? `\n${more(value)}` : "");
 }
