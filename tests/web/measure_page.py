@@ -2,7 +2,7 @@
 
 ::
 
-    PYTHONPATH=tests python -m web.measure_page [SECONDS]
+    PYTHONPATH=tests:. python -m web.measure_page [SECONDS]
 
 One plant runs throughout; its loop's lateness is read in the ring, first without a page, then with three.
 """
