@@ -104,7 +104,6 @@ async def serve(
         "access_log": False,
     }
     server = _Server(uvicorn.Config(app, **settings))
-    ready(url_of(listening, access))
 
     async def end() -> None:
         if ended is not None:
@@ -113,7 +112,9 @@ async def serve(
 
     ending = asyncio.create_task(end())
     try:
-        await server.serve(sockets=[listening])
+        with server.capture_signals():  # before anybody knows of it
+            ready(url_of(listening, access))
+            await server.serve(sockets=[listening])
     finally:
         ending.cancel()
         listening.close()

@@ -13,6 +13,8 @@ from hilplant.web.access import Access, Rate
 _GREETING_S, _SEND_S = 5.0, 5.0
 #: Codes with which the server closes a socket; the page's `link.js` tells them to the user.
 WRONG_TOKEN, TOO_SLOW, TOO_MUCH = 4401, 4408, 4429
+#: Code of the protocol for a message that is larger than it may be.
+TOO_LARGE = 1009
 #: A client is disconnected once it has sent so much nonsense, or so much too quickly.
 _MOST_NONSENSE = 20_000
 
@@ -34,6 +36,8 @@ class Visitor:
             except (WebSocketDisconnect, RuntimeError):
                 return
             if message["type"] == "websocket.disconnect":
+                if message.get("code") == TOO_LARGE:
+                    self._access.refuse("too large")
                 return
             if not self._rate.allows(asyncio.get_running_loop().time()):
                 await self._drop("too quick")
@@ -97,7 +101,10 @@ async def greeted(websocket: WebSocket, access: Access, serve: Callable[[Visitor
         await websocket.accept()
         try:
             first = parsed(await asyncio.wait_for(websocket.receive_text(), _GREETING_S))
-        except (TimeoutError, WebSocketDisconnect, KeyError, RuntimeError):
+        except WebSocketDisconnect as gone:
+            access.refuse("too large" if gone.code == TOO_LARGE else "no token")
+            return
+        except (TimeoutError, KeyError, RuntimeError):
             first = None
         visitor = Visitor(websocket, access)
         if first is None or not access.knows(first.get("token")):

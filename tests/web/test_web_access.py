@@ -172,8 +172,20 @@ def test_ten_thousand_messages_of_nonsense_are_counted_and_harm_nobody(host: str
         bad.send("x" * 70_000)
         with pytest.raises(ConnectionClosed):
             bad.recv(30)
-    assert set(access.refused) == {"malformed", "too quick"}
+    until(lambda: access.refused["too large"] == 1)
+    assert set(access.refused) == {"malformed", "too quick", "too large"}
     assert access.refused["malformed"] >= 200
+
+
+def test_what_is_too_large_or_says_nothing_is_counted_as_that(host: str, access: Access) -> None:
+    with open_socket(host, access.token) as socket:
+        socket.send("x" * 70_000)  # it may overtake the token
+        with pytest.raises(ConnectionClosed):
+            socket.recv(5)
+    until(lambda: access.refused == {"too large": 1})
+    with connect(f"ws://{host}/socket"):
+        pass
+    until(lambda: access.refused == {"too large": 1, "no token": 1})
 
 
 def test_a_rate_allows_its_burst_and_then_so_many_a_second() -> None:
