@@ -78,6 +78,8 @@ def _prepared(out: Path) -> Path:
     if not (out / "config").exists():
         (out / "config").symlink_to(shipped_root() / "config")
     (out / "bus.yaml").write_text(BUS_BENCH)
+    for recorded in out.glob("*.hilrec"):  # of a run before; a recording is never written over
+        recorded.unlink()
     return out
 
 
@@ -101,6 +103,8 @@ def _ended(words: list[str], folder: Path, times: tuple[float, float]) -> tuple[
     serves_s, limit_s = times
     with (folder / "said.txt").open("w+") as told:
         process = _started(words, folder, told)
+        if serves_s:
+            _wait_for_word(folder / "said.txt", "", process)
         try:
             code: int | str = process.wait(serves_s or limit_s)
         except subprocess.TimeoutExpired:
@@ -125,13 +129,21 @@ def _beside(text: str, bench: str, folder: Path) -> Iterator[None]:
     with (folder / "beside.txt").open("w") as told:
         process = _started(text.format(bench=bench).split(), folder, told)
         try:
-            until = time.monotonic() + 120.0
-            while "serves on" not in (folder / "beside.txt").read_text() and time.monotonic() < until:
-                time.sleep(0.2)
+            _wait_for_word(folder / "beside.txt", "serves on", process)
             yield
         finally:
             process.send_signal(signal.SIGINT)
             process.wait()
+
+
+def _wait_for_word(path: Path, word: str, process: "subprocess.Popen[bytes]") -> None:
+    """Wait until a process has said a word, or anything, or has ended: a busy machine starts it late."""
+    until = time.monotonic() + 120.0
+    while process.poll() is None and time.monotonic() < until:
+        said = path.read_text()
+        if said and word in said:
+            return
+        time.sleep(0.2)
 
 
 def _started(words: list[str], folder: Path, told: object) -> "subprocess.Popen[bytes]":

@@ -167,7 +167,7 @@ def identify(task: Task) -> Identified:
 
 
 def has_wiper(bench: Bench) -> bool:
-    """Say whether a bench has blades with friction to find; without them it is a motor alone (5.4.5)."""
+    """Say whether a bench has blades with friction to find; without them it is a motor alone (section 5.4.5)."""
     return bench.parameters.load.model == REDUCED
 
 

@@ -1,4 +1,4 @@
-"""Trains the motor network of a bench, and writes its file, its report and its plots (6.4.3)."""
+"""Trains the motor network of a bench, and writes its file, its report and its plots (section 6.4.3)."""
 
 from collections.abc import Sequence
 from dataclasses import asdict

@@ -1,4 +1,4 @@
-"""Trains the torque network of a bench, and writes its file, its report and its plots (6.4.2)."""
+"""Trains the torque network of a bench, and writes its file, its report and its plots (section 6.4.2)."""
 
 import time
 from dataclasses import dataclass, fields, replace

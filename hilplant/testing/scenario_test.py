@@ -5,7 +5,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from hilplant.bench import Bench, load_bench
+from hilplant.ecu.loop_controller import Inside, seated
+from hilplant.failure import Failure
 from hilplant.recording.reader import read_recording
+from hilplant.simulation.player import commands_relays
 from hilplant.simulation.scenario import Scenario, load_scenario
 from hilplant.testing.evidence import Evidence, recorded
 from hilplant.testing.known_signals import DatabaseSignals, database_signals, protections_of
@@ -64,14 +67,39 @@ class ScenarioTest:
 
 
 def run_virtually(
-    scenario: Scenario, bench: Bench, stand_in: bool = True, bench_name: str | None = None
+    scenario: Scenario,
+    bench: Bench,
+    stand_in: bool = True,
+    bench_name: str | None = None,
+    inside: Inside | None = None,
 ) -> ScenarioTest:
-    """Run a scenario in virtual time, and judge it; `bench_name` is what the user has called the bench."""
+    """Run a scenario in virtual time, and judge it; `bench_name` is what the user has called the bench.
+
+    With a controller `inside` the loop no stand-in ECU joins.
+
+    Raises
+    ------
+    Failure
+        When the scenario commands relays, which a controller does, or when the controller was stopped.
+
+    """
+    seat = None
+    if inside is not None:
+        if commands_relays(scenario):
+            raise Failure(
+                f"{scenario.path}: it commands relays, as the controller {inside.controller} does; leave one out"
+            )
+        bench, seat = seated(bench, inside)
     database = database_signals(bench.sources, protections_of(bench))
     expectations = expected(scenario, database, bench.step_ns)
-    virtual = VirtualBench(bench, scenario, stand_in)
+    virtual = VirtualBench(bench, scenario, stand_in and seat is None)
+    if seat is not None:
+        virtual.seat(seat.drive)
     virtual.run_scenario()
+    if seat is not None and seat.stopped:
+        raise Failure(f"{scenario.path}: {seat.stopped}")
     options = (f" --bench {bench_name}" if bench_name else "") + ("" if stand_in else " --ecu external")
+    options += "" if inside is None else f" --controller {inside.controller} --reference {inside.reference}"
     rerun = f"hilplant test {scenario.path}{options}"
     done = judged(scenario, bench.name, virtual.evidence(), database, expectations, rerun)
     return replace(done, record=virtual.record)

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from hilplant import resources
 from hilplant.bench import Bench, load_bench
+from hilplant.ecu.loop_controller import Inside
 from hilplant.failure import Failure
 from hilplant.simulation.scenario import Scenario, load_scenario
 from hilplant.testing.scenario_test import RULINGS, ScenarioTest, run_virtually
@@ -42,17 +43,27 @@ def scenario_files(names: Sequence[str]) -> list[Path]:
                 raise Failure(f"{name}: no .yaml file in this folder")
             found += inside
         else:
-            found.append(resources.named("tests", name))
+            found.append(_shipped_scenario(name) or resources.named("tests", name))
     return found
+
+
+def _shipped_scenario(name: str) -> Path | None:
+    """Return the scenario of this mere name that is shipped and is no test of an ECU."""
+    scenario = resources.shipped("config", "scenarios", f"{name}.yaml")
+    return scenario if scenario.is_file() and not Path(name).is_file() else None
 
 
 @dataclass(frozen=True)
 class Where:
-    """Where scenarios run: on a `channel` of the bench's interface, None for virtual time; in how many processes."""
+    """Where scenarios run: on a `channel` of the bench's interface, None for virtual time; in how many processes.
+
+    In virtual time a velocity controller may be inside the loop.
+    """
 
     channel: str | None = None
     stand_in: bool = True
     jobs: int | None = None
+    inside: Inside | None = None
 
 
 def run_tests(
@@ -65,7 +76,7 @@ def run_tests(
         if not scenario.expect:
             raise Failure(f"{scenario.path}: expects nothing, so that it tests nothing; give it an `expect` section")
     orders = [
-        _Order(each, benches.named(bench_name or each.bench or DEFAULT_BENCH), where.stand_in, bench_name)
+        _Order(each, benches.named(bench_name or each.bench or DEFAULT_BENCH), where.stand_in, bench_name, where.inside)
         for each in scenarios
     ]
     done = []
@@ -82,6 +93,7 @@ class _Order(NamedTuple):
     bench: Bench
     stand_in: bool
     bench_name: str | None
+    inside: Inside | None
 
 
 #: What the workers are to do; they are copies of this process and find it here.

@@ -18,6 +18,7 @@ from hilplant.faults.acting import ActingFaults
 from hilplant.faults.timing import Course
 from hilplant.faults.written import FaultEntry
 from hilplant.runtime.commands import COMES, GOES
+from hilplant.runtime.loop import Control
 from hilplant.runtime.row import ROW_WIDTH
 from hilplant.runtime.server import build_node
 from hilplant.runtime.tape import Tape
@@ -59,6 +60,12 @@ class VirtualBench:
         if stand_in and not commanded:
             self.ecu = EcuNode(bench.ecu_side(), cast("Any", self.bus.end()), controller_settings(bench.ecu))
         self._poll_ticks = max(1, round(bench.ecu.period_ms * MILLISECOND_NS / bench.step_ns))
+
+    def seat(self, control: Control) -> None:
+        """Have a controller inside the loop; the bench is one that :func:`hilplant.ecu.loop_controller.seated` gave."""
+        self._loop.control = control
+        if self._loop.intake is not None:
+            self._loop.intake.controlled = True
 
     @property
     def ticks(self) -> int:

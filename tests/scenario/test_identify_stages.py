@@ -1,4 +1,4 @@
-"""A motor without linkage (5.4.5), all stages and one by one; the truth is the twin's, not the bench's motor."""
+"""A motor without linkage (section 5.4.5), all stages and one by one; the truth is the twin's, not the bench's."""
 
 from pathlib import Path
 

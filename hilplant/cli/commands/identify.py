@@ -52,7 +52,7 @@ def identify(  # noqa: PLR0913, PLR0917 a command has as many options as it has
     """Identify motor and friction from recordings.
 
     Of a real wiper, with intervals. Three stages: transfer function, global search, least squares. What the data
-    cannot tell is named. A bench with `load: {model: none}` is a motor without linkage (5.4.5).
+    cannot tell is named. A bench with `load: {model: none}` is a motor without linkage (section 5.4.5).
     """
     need("identify")
     from hilplant.cli.actions.identify import run_identification

@@ -47,5 +47,9 @@ def motor(
         typer.echo(
             f"  fast over slow {fast / slow:.3f}; measured motors have 0.60 to 0.89, with brushes and wear in them"
         )
+        typer.echo(
+            f"  inductance by the same paths, coils without mutual flux: fast over slow {fast / slow:.3f}; "
+            "measured motors have 0.80 to 0.99, Table 5-6 2.1"
+        )
     typer.echo(f"{out} written; put it under `motor` of a bench")
     write_json(json_file, found.figures)

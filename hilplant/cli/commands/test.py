@@ -31,6 +31,10 @@ def test(  # noqa: PLR0913, PLR0917
     jobs: Annotated[
         int | None, typer.Option(min=1, help="processes, in virtual time; as many as there are CPUs if left out")
     ] = None,
+    controller: Annotated[
+        str | None, typer.Option(help="a velocity controller inside the loop, in virtual time, instead of an ECU")
+    ] = None,
+    reference: Annotated[str, typer.Option(help="its wanted crank speed: RAD_S, or TIME:RAD_S,...")] = "3.14",
     junit: JUnitFile = None,
     html: HtmlFile = None,
     json_file: JsonFile = None,
@@ -38,10 +42,12 @@ def test(  # noqa: PLR0913, PLR0917
     """Run scenarios as tests, and judge what they expect.
 
     Plant and stand-in ECU meet on an in-memory bus in virtual time; with --on CHANNEL on that channel of the bench's
-    interface, in real time, one test after the other. Without a scenario it is the shipped suite.
+    interface, in real time, one test after the other. Without a scenario it is the shipped suite. With --controller
+    a velocity controller commands relays and supply inside the loop.
     Exit code 0 when all pass; 1 when one fails, was blocked or stayed inconclusive.
     """
     need("testing")
+    from hilplant.ecu.loop_controller import Inside
     from hilplant.testing.junit import write_junit
     from hilplant.testing.report import write_report
     from hilplant.testing.suite import Where, figures_of, run_tests, scenario_files, summary_of
@@ -51,7 +57,10 @@ def test(  # noqa: PLR0913, PLR0917
         raise Failure(f"--ecu must be stand-in or external, not {ecu}")
     for file in (junit, html, json_file):
         claim(file)
-    where = Where(None if on == "virtual" else on, ecu == "stand-in", jobs)
+    if controller is not None and on != "virtual":
+        raise Failure(f"--controller is for virtual time; on {on}: hilplant run --controller, or hilplant control")
+    inside = None if controller is None else Inside(controller, reference)
+    where = Where(None if on == "virtual" else on, ecu == "stand-in", jobs, inside)
     tests = run_tests(scenario_files(scenarios or []), bench, where, lambda done: typer.echo("\n".join(lines_of(done))))
     typer.echo(summary_of(tests))
     if junit is not None:
