@@ -39,6 +39,7 @@ _TIME = Quantity("time_s", 0.0, 10.0, "how long it takes [s]")
 
 def _at_terminal(terminal: str, what: str) -> list[FaultDefinition]:
     wire = f"wiring.wire_{terminal}"
+    beside = "; nothing while its wire is sound, another way to ground where that is broken" if terminal == "31" else ""
     return [
         FaultDefinition(
             f"open_{terminal}", "electrical", f"wire to terminal {terminal} ({what}) broken",
@@ -54,7 +55,7 @@ def _at_terminal(terminal: str, what: str) -> list[FaultDefinition]:
         ),
         FaultDefinition(
             f"short_{terminal}_to_31", "electrical", f"terminal {terminal} ({what}) touches ground",
-            "a conductance 1/R from the terminal to ground", (_conductance(f"{wire}.to_ground_s"),), (_SHORT,),
+            f"a conductance 1/R from the terminal to ground{beside}", (_conductance(f"{wire}.to_ground_s"),), (_SHORT,),
         ),
     ]  # fmt: skip
 

@@ -13,13 +13,13 @@ import pytest
 
 from hilplant.arrays import Floats
 from hilplant.bench import Bench, load_bench
-from hilplant.faults.catalogue import FAULTS
+from hilplant.faults.catalogue import BY_NAME, FAULTS
 from hilplant.faults.fault import FaultDefinition
 from hilplant.faults.player import FaultPlayer
 from hilplant.faults.timing import Inserted
 from hilplant.models.plant import simulate_rows
 from hilplant.models.records import STATE_INDEX
-from hilplant.signals import INPUT_INDEX, OUTPUTS
+from hilplant.signals import INPUT_INDEX, OUTPUT_INDEX, OUTPUTS
 
 #: Values where the middle of the range would do nothing, or where a name alone does not say what is seen.
 VALUES: dict[str, dict[str, float]] = {
@@ -74,7 +74,7 @@ def run(name: str, parts: list[tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
     return np.concatenate(found), state
 
 
-#: Terminal 31 is grounded already where wires are ideal: the short circuit lies beside a wire without resistance.
+#: Terminal 31 is ground already: this short circuit is the current's other way where the wire is broken, tested below.
 SEEN = [fault for fault in FAULTS if fault.name != "short_31_to_31"]
 
 
@@ -87,6 +87,32 @@ def test_the_effect_of_a_fault_is_seen_in_the_outputs(fault: FaultDefinition) ->
         differing = max(differing, float(np.abs(faulty - without).max()))
         assert np.isfinite(faulty).all()
     assert differing > 1e-3, "no output tells it"
+
+
+def shorted_at_31(*others: str, touching: bool = True) -> Floats:
+    """Return the outputs of the default bench with faults, and with terminal 31 touching ground by 0.01 ohm."""
+    faults = [inserted(BY_NAME[name]) for name in others]
+    if touching:
+        faults.append(inserted(BY_NAME["short_31_to_31"]))
+    row = bench("default").parameter_row.copy()
+    for index, value in FaultPlayer(faults, row, 1e-3).changes(0).items():
+        row[index] = value
+    return run("default", [(drive("default"), row)])[0]
+
+
+def test_terminal_31_at_ground_changes_nothing_while_its_wire_is_sound_and_replaces_it_where_it_is_broken() -> None:
+    current = OUTPUT_INDEX["current_a"]
+    sound, beside = shorted_at_31(touching=False), shorted_at_31()
+    assert beside == pytest.approx(sound, rel=1e-9, abs=1e-9)
+    broken, replaced = shorted_at_31("open_31", touching=False), shorted_at_31("open_31")
+    assert np.abs(broken[:, current]).max() < 1e-9
+    assert np.abs(sound[:, current]).max() > 3.0
+    in_series = bench("default").parameter_row.copy()
+    resistance = FaultPlayer([Inserted(BY_NAME["resistance_31"], {"resistance_ohm": 0.01})], in_series, 1e-3)
+    for index, value in resistance.changes(0).items():
+        in_series[index] = value
+    truth, _ = run("default", [(drive("default"), in_series)])
+    assert replaced[:, current] == pytest.approx(truth[:, current], rel=1e-6, abs=1e-6)
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.name)
