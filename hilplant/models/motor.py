@@ -21,6 +21,9 @@ SEARCH_CAP = 80
 #: Times are found to this part of the stretch in which they lie.
 SEARCH_TOLERANCE = 1e-14
 
+#: A stretch whose square times that of the angular frequency is below this is shorter than a half period: below pi^2.
+CERTAINLY_SHORTER = 9.0
+
 
 class Hold(NamedTuple):
     """Torques of the motor [N m] from which a standing shaft breaks away, forwards and backwards.
@@ -49,7 +52,7 @@ def advance(motion: ArmatureMotion, drive: ArmatureDrive, duration: float) -> Ar
             motion, taken = stick(motion, drive, hold, left)
         else:
             # an oscillation decays: if its first period does not bring the speed to zero, nothing after it does
-            stretch = min(left, half_period(drive)) if swings < 2 else left
+            stretch = within_half_period(left, drive) if swings < 2 else left
             motion, taken = slide(motion, drive, direction, stretch)
         swings = swings + 1 if motion.speed != 0.0 else 0
         left -= taken
@@ -136,9 +139,23 @@ def dips(start: ArmatureMotion, end: ArmatureMotion, drive: ArmatureDrive, sign:
 @compiled
 def half_period(drive: ArmatureDrive) -> float:
     """Return the time in which the speed can have one extremum at most [s]; endless without oscillation."""
+    squared = angular_frequency_squared(drive)
+    return math.pi / math.sqrt(squared) if squared > 0.0 else math.inf
+
+
+@compiled
+def angular_frequency_squared(drive: ArmatureDrive) -> float:
+    """Return the square of the angular frequency of current and speed [1/s2]; not above 0 where they do not swing."""
     half = 0.5 * (drive.resistance / drive.inductance - drive.damping / drive.inertia)
-    discriminant = half * half - drive.constant * drive.constant / (drive.inductance * drive.inertia)
-    return math.pi / math.sqrt(-discriminant) if discriminant < 0.0 else math.inf
+    return drive.constant * drive.constant / (drive.inductance * drive.inertia) - half * half
+
+
+@compiled
+def within_half_period(stretch: float, drive: ArmatureDrive) -> float:
+    """Return the stretch [s], at most the half period; its root and quotient are taken only where it may be shorter."""
+    if not angular_frequency_squared(drive) * stretch * stretch > CERTAINLY_SHORTER:
+        return stretch
+    return min(stretch, half_period(drive))
 
 
 @compiled

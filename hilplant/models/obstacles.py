@@ -31,8 +31,8 @@ class Met(NamedTuple):
     dry: float
 
 
-class NoIce(NamedTuple):
-    """A blade that has left the ice."""
+class Frozen(NamedTuple):
+    """With what the ice still holds a blade."""
 
     frozen_n_m: float
 
@@ -72,9 +72,9 @@ def with_ice_left(of: Obstacles, ice: IceState) -> Obstacles:
     """Return the obstacles without the ice that a blade has left."""
     left, right = of.left, of.right
     if ice.left_rad >= of.slip_rad:
-        left = changed(left, NoIce(0.0))
+        left = changed(left, Frozen(0.0))
     if ice.right_rad >= of.slip_rad:
-        right = changed(right, NoIce(0.0))
+        right = changed(right, Frozen(0.0))
     return changed(of, BothSides(left, right))
 
 

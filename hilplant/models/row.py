@@ -12,7 +12,8 @@ the same written by hand costs; a translation of the step to another language mu
 ``write(record, row)``
     ``row[0] = record.x; row[1] = record.inner.y; ...``; an array at the end is not written
 ``all_finite(record)``
-    ``0.0 * record.x + 0.0 * record.inner.y + ... == 0.0``, a sum over the elements that are declared as watched
+    ``0.0 * (record.x + record.inner.y + ...) == 0.0``, a sum over the elements that are declared as watched; their sum
+    must be finite too, which it is below 1e306
 ``summed(record)``
     ``1.41421356 * record.x + 1.73205081 * record.inner.y + ...``, a sum by which a change of any element is seen
 ``guarded(record)``
@@ -55,9 +56,9 @@ def write(record: tuple[Any, ...], row: Any) -> None:
 
 
 def all_finite(record: tuple[Any, ...]) -> bool:
-    """Return whether all elements that are watched are finite."""
+    """Return whether all elements that are watched, and their sum, are finite."""
     signals = declared(type(record))
-    return all(math.isfinite(value) for signal, value in zip(signals, pack(record), strict=True) if signal.watched)
+    return math.isfinite(sum(value for signal, value in zip(signals, pack(record), strict=True) if signal.watched))
 
 
 def summed(record: tuple[Any, ...]) -> float:
@@ -133,8 +134,8 @@ def _write(record: type[Any], _: None) -> Written:
 
 @written_out(all_finite)
 def _all_finite(record: type[Any]) -> Written:
-    terms = [f"0.0 * record.{signal.name}" for signal in declared(record) if signal.watched]
-    return [f"return {_sum_of(terms)} == 0.0"], {}
+    terms = [f"record.{signal.name}" for signal in declared(record) if signal.watched]
+    return [f"return 0.0 * ({_sum_of(terms)}) == 0.0"], {}
 
 
 def _sum_of(terms: list[str]) -> str:

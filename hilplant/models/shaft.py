@@ -15,7 +15,7 @@ from hilplant.models.circuit import Connection
 from hilplant.models.gear import held_torque, through_gear
 from hilplant.models.load import by_speed, resist_as, without_inertia
 from hilplant.models.lookup import find, within_turn
-from hilplant.models.motor import Hold, advance, direction_of, half_period, slide, stand, stick
+from hilplant.models.motor import Hold, advance, direction_of, slide, stand, stick, within_half_period
 from hilplant.models.records import Motor, Parameters
 from hilplant.models.resistance import Crank, Resistance
 from hilplant.models.torque_network import Tangent
@@ -140,7 +140,7 @@ def turn_in_stretches(joint: Joint, load: Resistance, train: Train) -> ArmatureM
             motion, taken, direction = let_go(motion, drive, load, left, train)
         else:
             drive = drive_at(ahead.half_way, direction, load, train)
-            motion, taken = slide(motion, drive, direction, min(ahead.stretch, half_period(drive)))
+            motion, taken = slide(motion, drive, direction, within_half_period(ahead.stretch, drive))
             direction = 0.0
         left -= taken
     return stand(motion, drive, left)
