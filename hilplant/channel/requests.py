@@ -9,7 +9,6 @@ from hilplant.bench.values import input_index, signal_value
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.control.reference import FASTEST_RAD_S
 from hilplant.failure import Failure
-from hilplant.faults.written import entry_from
 from hilplant.models.records import PARAMETER_INDEX
 from hilplant.runtime import commands as c
 from hilplant.runtime.commands import ChannelCommand
@@ -117,6 +116,8 @@ _FAULT_KEYS = ("id", "do", "lease_s")
 
 
 def _fault(request: dict[str, Any]) -> list[ChannelCommand]:
+    from hilplant.faults.written import entry_from  # with what checks YAML, a second of most runs that need none of it
+
     written = {key: value for key, value in request.items() if key not in _FAULT_KEYS}
     text = json.dumps(written, separators=(",", ":"), ensure_ascii=False).encode(errors="replace")
     try:
