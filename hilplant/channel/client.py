@@ -13,7 +13,7 @@ from hilplant.arrays import Floats
 from hilplant.channel.requests import LEASE_S
 from hilplant.channel.run_files import RunFile, column_of, columns, run_named
 from hilplant.failure import Failure
-from hilplant.faults.written import entry_named
+from hilplant.faults.written import FaultEntry, entry_named
 from hilplant.runtime.follower import Follower
 
 _ALIVE_EVERY_S = LEASE_S / 4
@@ -88,7 +88,10 @@ class RunChannel:
         ``fault("resistance_53", resistance_ohm=0.5, for_=2.0)``; `for_` stands for `for`, and `at` counts from now. The
         same fault about the same message takes the place of the one before. `hilplant faults` lists all.
         """
-        entry = entry_named(name, keys)
+        return self.insert(entry_named(name, keys), lease_s)
+
+    def insert(self, entry: FaultEntry, lease_s: float = LEASE_S) -> int:
+        """Insert a fault as :meth:`fault` does."""
         tick = self._tick("fault", lease_s=lease_s, **entry.model_dump(by_alias=True, exclude_defaults=True))
         self._leased = True
         return tick

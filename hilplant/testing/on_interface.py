@@ -5,7 +5,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -15,7 +15,7 @@ import numpy as np
 
 from hilplant.bench import Bench
 from hilplant.bus.transport import Transport, open_transport
-from hilplant.channel.run_files import runs
+from hilplant.channel.run_files import RunFile, runs
 from hilplant.ecu.node import EcuNode
 from hilplant.ecu.settings import controller_settings
 from hilplant.ecu.stalk import stalk_at
@@ -70,7 +70,8 @@ def run_on_interface(
     folder = tempfile.TemporaryDirectory(prefix="hilplant-test-")
     recording = Path(folder.name) / "run.hilrec"
     transport = open_transport({**bench.interface, "channel": channel})
-    with contextlib.closing(transport), _serving(scenario, channel, bench_name, recording) as process:
+    command = server_command(scenario, channel, bench_name, recording)
+    with contextlib.closing(transport), serving(command, str(scenario.path), recording.exists) as process:
         acting = _Acting(scenario, bench, _actor(scenario, bench, database, (transport, stand_in)))
         late = acting.until_it_ends(process)
     options = (f" --bench {bench_name}" if bench_name else "") + ("" if stand_in else " --ecu external")
@@ -99,10 +100,8 @@ def server_command(scenario: Scenario, channel: str, bench_name: str | None, rec
 
 
 @contextmanager
-def _serving(
-    scenario: Scenario, channel: str, bench_name: str | None, recording: Path
-) -> Iterator[subprocess.Popen[bytes]]:
-    command = server_command(scenario, channel, bench_name, recording)
+def serving(command: list[str], wanted_by: str, ran: Callable[[], bool]) -> Iterator[subprocess.Popen[bytes]]:
+    """Start a server, wait for its end or bring it about; Failure with its words unless it `ran`."""
     with tempfile.TemporaryFile() as said:
         options: dict[str, Any] = {"stdout": said, "stderr": subprocess.STDOUT, "stdin": subprocess.DEVNULL}
         process = subprocess.Popen(command, **options)
@@ -116,9 +115,9 @@ def _serving(
                     if process.poll() is None:
                         ask()
                         process.wait(_END_S)
-        if not recording.exists():
+        if not ran():
             said.seek(0)
-            raise Failure(f"{scenario.path}: the server did not run: {said.read().decode(errors='replace').strip()}")
+            raise Failure(f"{wanted_by}: the server did not run: {said.read().decode(errors='replace').strip()}")
 
 
 @dataclass
@@ -134,9 +133,10 @@ class _Acting:
 
     def until_it_ends(self, process: subprocess.Popen[bytes]) -> list[int]:
         """Act until the loop has ended or should have; returns the steps that are unfit because this end came late."""
-        follower = self._follower(process)
-        if follower is None:
+        run = run_of(process, self.clock)
+        if run is None:
             return []
+        follower = Follower(run.ring, history=True)
         period_ns, acted_ns = round(self.bench.ecu.period_ms * MILLISECOND_NS), 0
         limit_ns = self.clock.now_ns() + round(_BEGIN_S * SECOND_NS)
         longest_s = self.scenario.seconds + self.scenario.start_within + _LONGER_S
@@ -163,15 +163,16 @@ class _Acting:
         stalk_s = -1.0 if self.start_ns is None else (now_ns - self.start_ns) / SECOND_NS
         self.actor.act(now_ns, stalk_at(self.scenario.stalk, stalk_s))
 
-    def _follower(self, process: subprocess.Popen[bytes]) -> Follower | None:
-        """Wait for the loop's first row; None where the server has ended before."""
-        end_ns = self.clock.now_ns() + round(_BEGIN_S * SECOND_NS)
-        while process.poll() is None and self.clock.now_ns() < end_ns:
-            run = next((each for each in runs() if each.pid == process.pid), None)
-            if run is not None:
-                return Follower(run.ring, history=True)
-            self.clock.sleep_until_ns(self.clock.now_ns() + 20 * _LOOK_NS)
-        return None
+
+def run_of(process: subprocess.Popen[bytes], clock: Clock) -> RunFile | None:
+    """Wait for the loop of a server that was started; None where it has ended before, or does not come."""
+    end_ns = clock.now_ns() + round(_BEGIN_S * SECOND_NS)
+    while process.poll() is None and clock.now_ns() < end_ns:
+        run = next((each for each in runs() if each.pid == process.pid), None)
+        if run is not None:
+            return run
+        clock.sleep_until_ns(clock.now_ns() + 20 * _LOOK_NS)
+    return None
 
 
 class _StandIn:

@@ -1,10 +1,11 @@
-"""The plugin for pytest: fixtures for a plant in virtual time, scenario files as tests, evidence of what failed.
+"""The plugin for pytest: plants in virtual time or on a channel, scenario files as tests, evidence of what failed.
 
 Options: `--hilplant-bench`, `--hilplant-clock`, `--hilplant-channel`, `--hilplant-failures`.
 """
 
 import re
 from collections.abc import Generator, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,13 +36,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Refuse options that do not fit each other."""
-    if config.getoption("--hilplant-clock") == "wall":
-        raise pytest.UsageError(
-            "--hilplant-clock wall: tests run in virtual time; on an interface run `hilplant run BENCH --record FILE`, "
-            "and judge the recording with `hilplant judge FILE SCENARIO`"
-        )
-    if config.getoption("--hilplant-channel") is not None:
+    channel, wall = config.getoption("--hilplant-channel"), config.getoption("--hilplant-clock") == "wall"
+    if channel is not None and not wall:
         raise pytest.UsageError("--hilplant-channel needs --hilplant-clock wall")
+    if wall and channel is None:
+        raise pytest.UsageError("--hilplant-clock wall needs --hilplant-channel, such as vcan0")
+    if wall and (hasattr(config, "workerinput") or getattr(config.option, "numprocesses", None)):
+        raise pytest.UsageError("--hilplant-clock wall: one channel takes one test at a time; leave out -n")
 
 
 @pytest.fixture(scope="session")
@@ -52,24 +53,31 @@ def hilplant_bench(request: pytest.FixtureRequest) -> "Bench":
 
 @pytest.fixture
 def wiper(request: pytest.FixtureRequest, hilplant_bench: "Bench") -> Iterator["WiperUnderTest"]:
-    """A plant in virtual time; the test is the ECU."""
+    """A plant; the test is the ECU."""
     yield from _given(request, hilplant_bench, stand_in=False)
 
 
 @pytest.fixture
 def car(request: pytest.FixtureRequest, hilplant_bench: "Bench") -> Iterator["WiperUnderTest"]:
-    """A plant with the stand-in ECU before it, in virtual time; the test is the driver."""
+    """A plant with the stand-in ECU before it; the test is the driver."""
     yield from _given(request, hilplant_bench, stand_in=True)
 
 
 def _given(request: pytest.FixtureRequest, bench: "Bench", stand_in: bool) -> Iterator["WiperUnderTest"]:
     from hilplant.testing.wiper import WiperUnderTest
 
-    made = WiperUnderTest(bench, stand_in)
-    request.node.stash[_WIPER] = made
-    yield made
-    if made.has_bus:
-        made.bus.shutdown()
+    channel = request.config.getoption("--hilplant-channel")
+    with ExitStack() as open_now:
+        clocked = None
+        if channel is not None:
+            from hilplant.testing.clocked_bench import clocked_bench
+
+            clocked = open_now.enter_context(clocked_bench(bench, _bench_name(request.config), channel, stand_in))
+        made = WiperUnderTest(bench, stand_in, clocked)
+        request.node.stash[_WIPER] = made
+        yield made
+        if made.has_bus:
+            made.bus.shutdown()
 
 
 @pytest.hookimpl(wrapper=True)
@@ -126,10 +134,14 @@ class ScenarioItem(pytest.Item):
         from hilplant.testing.scenario_test import run_virtually
         from hilplant.testing.words import lines_of
 
-        scenario = load_scenario(self.path)
-        self.done = run_virtually(
-            scenario, _bench(self.config, scenario.bench), bench_name=self.config.getoption("--hilplant-bench")
-        )
+        scenario, named = load_scenario(self.path), self.config.getoption("--hilplant-bench")
+        bench, channel = _bench(self.config, scenario.bench), self.config.getoption("--hilplant-channel")
+        if channel is None:
+            self.done = run_virtually(scenario, bench, bench_name=named)
+        else:
+            from hilplant.testing.on_interface import run_on_interface
+
+            self.done = run_on_interface(scenario, bench, channel, bench_name=named)
         if self.done.ruling != "pass":
             raise ScenarioFailedError("\n".join(lines_of(self.done)))
 
@@ -148,11 +160,17 @@ class ScenarioItem(pytest.Item):
 
 def _bench(config: pytest.Config, otherwise: str | None = None) -> "Bench":
     from hilplant.extras import need
-    from hilplant.testing.suite import DEFAULT_BENCH, Benches
+    from hilplant.testing.suite import Benches
 
     need("testing")
     kept = config.stash.setdefault(_BENCHES, Benches())
-    return kept.named(config.getoption("--hilplant-bench") or otherwise or DEFAULT_BENCH)
+    return kept.named(_bench_name(config, otherwise))
+
+
+def _bench_name(config: pytest.Config, otherwise: str | None = None) -> str:
+    from hilplant.testing.suite import DEFAULT_BENCH
+
+    return config.getoption("--hilplant-bench") or otherwise or DEFAULT_BENCH
 
 
 _BENCHES: "pytest.StashKey[Benches]" = pytest.StashKey()

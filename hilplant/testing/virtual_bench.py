@@ -2,11 +2,7 @@
 
 import math
 from dataclasses import replace
-from datetime import UTC, datetime
-from pathlib import Path
 from typing import Any, cast
-
-import numpy as np
 
 from hilplant.bench import Bench
 from hilplant.bench.assembly import initial_state
@@ -17,22 +13,16 @@ from hilplant.ecu.stalk import PlayedStalk
 from hilplant.faults.acting import ActingFaults
 from hilplant.faults.timing import Course
 from hilplant.faults.written import FaultEntry
-from hilplant.runtime.commands import COMES, GOES
 from hilplant.runtime.loop import Control
-from hilplant.runtime.row import ROW_WIDTH
 from hilplant.runtime.server import build_node
-from hilplant.runtime.tape import Tape
 from hilplant.runtime.virtual_loop import VirtualLoop
 from hilplant.simulation.player import ScenarioPlayer, commands_relays
 from hilplant.simulation.scenario import Scenario
-from hilplant.testing.evidence import Evidence, FaultEdge
+from hilplant.testing.kept_run import KeptRun
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
-#: A run in virtual time has no date.
-_NO_DATE = datetime(1970, 1, 1, tzinfo=UTC)
 
-
-class VirtualBench:
+class VirtualBench(KeptRun):
     """A bench that is stepped: plant, stand-in ECU (`stand_in`) and the scenario's hand on one bus.
 
     Time 0 is the first tick. A relay that the scenario commands goes over the bus, in the ECU's messages, and no
@@ -43,7 +33,8 @@ class VirtualBench:
         if scenario is not None and scenario.initial:
             row = initial_state(bench.parameters, bench.initial | scenario.initial)
             bench = replace(bench, state_row=row)
-        self.bench, self.bus, self.tape = bench, InMemoryBus(), Tape()
+        super().__init__(bench)
+        self.bus = InMemoryBus()
         self._plant_end = self.bus.end()
         acting = ActingFaults(bench, self._plant_end)
         self._stalk = PlayedStalk(scenario.stalk if scenario is not None else ())
@@ -96,10 +87,10 @@ class VirtualBench:
         last = self.tape.ticks - 1
         if self.ecu is not None and last % self._poll_ticks == 0:
             last_ns = last * self.bench.step_ns
-            self.ecu.poll(last_ns, self._stalk((last_ns - self._start_ns) / SECOND_NS))
+            self.ecu.poll(last_ns, self._stalk((last_ns - self.start_ns) / SECOND_NS))
 
     @property
-    def _start_ns(self) -> int:
+    def start_ns(self) -> int:
         """The scenario's time 0; the time of the next tick while it has not come."""
         start_ns = None if self.player is None else self.player.start_ns
         return 0 if self.player is None else self.now_ns if start_ns is None else start_ns
@@ -122,31 +113,11 @@ class VirtualBench:
         """Set an input of the plant from the next tick on."""
         self._loop.commanded[index] = value
 
+    def end_fault(self, course: Course) -> None:
+        """Let a fault go."""
+        self.faults.end(course)
+
     def insert_fault(self, entry: FaultEntry) -> Course:
         """Insert a fault; its times count from now."""
         made = entry.inserted(self.bench.step_ns / SECOND_NS)
         return self.faults.hold(replace(made, at=made.at + self.ticks))
-
-    def evidence(self) -> Evidence:
-        """Return what has been so far."""
-        frames = self.tape.frames
-        places = np.array([bus_ns // self.bench.step_ns for _, bus_ns, _, _ in frames], np.int64)
-        edges = [
-            FaultEdge(event.time_ns // self.bench.step_ns, event.text.decode(), event.kind == COMES)
-            for event in self.tape.events
-            if event.kind in (COMES, GOES)
-        ]
-        start = self._start_ns // self.bench.step_ns
-        found = [frame for _, _, frame, _ in frames]
-        return Evidence(self.bench.step_ns, self.tape.read_rows(), places, found, edges, start)
-
-    def record(self, path: Path) -> None:
-        """Write what has been so far as a recording, over a file that is there."""
-        from hilplant.recording.metadata import describe
-        from hilplant.recording.writer import RecordingWriter
-
-        path.unlink(missing_ok=True)
-        writer = RecordingWriter(path, describe(self.bench, _NO_DATE), ROW_WIDTH)
-        writer.add(self.tape.read_rows(), self.tape.read_frames(), self.tape.read_events())
-        writer.write(last=True)
-        writer.close()

@@ -1,16 +1,28 @@
 """A python-can bus beside the plant in virtual time: waiting for a frame lets plant seconds pass, not wall seconds."""
 
 import math
+from collections import deque
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import can
 from can.broadcastmanager import CyclicSendTaskABC, ModifiableCyclicTaskABC
 
-from hilplant.bus.in_memory import BusEnd
+from hilplant.bus.frame import Frame
 from hilplant.bus.transport import frame_of, message_of
 from hilplant.units import SECOND_NS
 from hilplant.verdicts.written import DEFAULT_WAIT_S
+
+
+class End(Protocol):
+    """One end of a bus: in memory, or at a channel."""
+
+    @property
+    def coming(self) -> deque[Frame]:
+        """What has come and was not taken."""
+
+    def send(self, frame: Frame) -> object:
+        """Give a frame to all others."""
 
 
 class VirtualCanBus(can.BusABC):
@@ -19,7 +31,7 @@ class VirtualCanBus(can.BusABC):
     Time passes only in calls of the test, so a `can.Notifier`, which is a thread, does not fit; `send_periodic` does.
     """
 
-    def __init__(self, end: BusEnd, step: Callable[[], None], now_ns: Callable[[], int]) -> None:
+    def __init__(self, end: End, step: Callable[[], None], now_ns: Callable[[], int]) -> None:
         super().__init__(channel="hilplant")
         self.channel_info = "hilplant in virtual time"
         self._end, self._step, self._now_ns = end, step, now_ns

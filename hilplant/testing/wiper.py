@@ -28,20 +28,22 @@ from hilplant.verdicts.ticks import margin
 from hilplant.verdicts.written import DEFAULT_WAIT_S, Limits, kind_of
 
 if TYPE_CHECKING:
+    from hilplant.testing.clocked_bench import ClockedBench
     from hilplant.testing.virtual_can import VirtualCanBus
 
 _DEGREES = "_deg"
 
 
 class WiperUnderTest:
-    """A bench in virtual time, in front of a test that is the ECU; with `stand_in` the stand-in ECU joins.
+    """A bench in front of a test that is the ECU: in virtual time, or on the clock where it is given so.
 
     Times are seconds of the plant, counted from its first tick. A signal is one of the plant or of the bench's
     database; an angle `..._rad` of the plant is also there as `..._deg`, from -180 to 180.
     """
 
-    def __init__(self, bench: Bench, stand_in: bool = False) -> None:
-        self.virtual = VirtualBench(bench, stand_in=stand_in)
+    def __init__(self, bench: Bench, stand_in: bool = False, clocked: "ClockedBench | None" = None) -> None:
+        """With `stand_in` the stand-in ECU joins; on the clock it has done so already."""
+        self.virtual: VirtualBench | ClockedBench = clocked or VirtualBench(bench, stand_in=stand_in)
         self.database = database_signals(bench.sources, protections_of(bench))
         self._end = self.virtual.bus.end()
         self._bus: VirtualCanBus | None = None
@@ -106,7 +108,7 @@ class WiperUnderTest:
         try:
             yield
         finally:
-            self.virtual.faults.end(course)
+            self.virtual.end_fault(course)
 
     def insert_fault(self, fault: str, /, **keys: Any) -> Course:
         """Insert a fault that stays for as long as it says; keys as for `fault`."""

@@ -1,5 +1,6 @@
 """The plugin as a user of pytest meets it: in a folder of its own, with tests that pass and tests that fail."""
 
+import os
 import time
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -30,6 +31,32 @@ stalk: [[1, slow]]
 expect:
   - {rises: relay_on, after: 1.0, within: 0.05}
   - {always: current_a, below: LIMIT}
+"""
+
+
+#: A multicast group is a bus that other processes reach without CAN in the kernel.
+GROUP = "239.74.163.3"
+ON_A_BUS = """
+extends: polynomial.yaml
+name: on a bus
+bus:
+  interface: {{interface: udp_multicast, channel: 239.74.163.3, port: {port}}}
+"""
+#: Each test, and what it comes to in virtual time and on the clock.
+DRIVES = """
+    def test_brown_out(car):
+        car.send("StalkCommand", Master_Input="Slow")
+        car.run(0.5)
+        with car.fault("frames_lost", message="ParkSwitch"):
+            car.wait("EcuFault", "Park_Unknown", within=2.0)
+        car.set(brake_torque_n_m=500.0)
+        car.wait("EcuFault", "Stall", within=3.0)
+        assert car.bus.recv(1.0) is not None
+
+    def test_inrush(wiper):
+        wiper.expect.always("current_a", below=5.0)
+        wiper.send("RelayCommand", RelayOn=True)
+        wiper.run(1.0)
 """
 
 
@@ -137,3 +164,39 @@ def test_scenario_files_are_tests(pytester: pytest.Pytester, workers: tuple[str,
     result.stdout.fnmatch_lines(["*test_bad.hil.yaml:6: fail: always: current_a, below: 5: at *beyond the limit"])
     result.stdout.fnmatch_lines(["*test_mistake.hil.yaml:3: no signal 'curent_a', did you mean 'current_a'?*"])
     assert replay(pytester.path / "hilplant-failures" / "test_bad.hil.yaml_test_bad" / "run.hilrec").equal
+
+
+CLOCKED = ("--hilplant-clock", "wall", "--hilplant-channel", GROUP)
+
+
+@pytest.mark.timeout(600)  # a server starts for each test
+@pytest.mark.parametrize("options", [(), CLOCKED], ids=["virtual", "clocked"])
+def test_the_same_tests_in_virtual_time_and_on_a_channel(pytester: pytest.Pytester, options: tuple[str, ...]) -> None:
+    pytest.importorskip("msgpack")
+    bench = pytester.path / "on_a_bus.yaml"
+    bench.write_text(ON_A_BUS.format(port=45000 + os.getpid() % 2000))
+    pytester.makepyfile(PARKS + DRIVES)
+    Path(pytester.path, "test_good.hil.yaml").write_text(SCENARIO.replace("LIMIT", "25"))
+    result = run(pytester, "--hilplant-bench", str(bench), *options)
+    outcomes, ill = result.parseoutcomes(), [line for line in result.outlines if "below: " in line]
+    assert outcomes["passed"] + outcomes["failed"] == 4
+    unseen = [line for line in ill if "inconclusive: " in line]  # a busy machine loses ticks, and then decides nothing
+    assert len([line for line in ill if ": fail: always: current_a, below: 5" in line]) + len(unseen) >= 1
+    assert outcomes["failed"] == 1 or (options and len(unseen) >= 1)
+    result.stdout.fnmatch_lines(["replay: hilplant replay *"])
+    (recording,) = (pytester.path / "hilplant-failures").glob("*test_inrush*/run.hilrec")
+    assert replay(recording).equal
+
+
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        (("--hilplant-clock", "wall"), "needs --hilplant-channel"),
+        (CLOCKED[2:], "needs --hilplant-clock wall"),
+        ((*CLOCKED, "-n", "2", "-p", "xdist"), "one channel takes one test at a time"),
+    ],
+)
+def test_options_that_do_not_fit_are_refused(pytester: pytest.Pytester, options: tuple[str, ...], why: str) -> None:
+    result = run(pytester, *options)
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines([f"*{why}*"])
