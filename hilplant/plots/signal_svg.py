@@ -11,6 +11,8 @@ from hilplant.arrays import Floats
 _WIDTH, _HEIGHT = 760, 190
 _LEFT, _RIGHT, _TOP, _BOTTOM = 62, 12, 22, 34
 _COLUMNS = 700
+#: Width of a letter and height of a line of the labels.
+_LETTER, _LINE = 6.5, 12
 _BLUE, _RED, _GREEN, _GREY = "#0b5cad", "#b3261e", "#2a7f3e", "#6b7280"
 
 
@@ -133,12 +135,18 @@ def _path(axes: _Axes, values: Floats, step_s: float) -> str:
 
 
 def _marks(axes: _Axes, drawing: SignalDrawing) -> list[str]:
-    parts = []
-    for name, time_s in drawing.marks.items():
-        x = axes.x(time_s)
+    parts: list[str] = []
+    written: list[tuple[float, float, int]] = []
+    for name, time_s in sorted(drawing.marks.items(), key=lambda mark: mark[1]):
+        x, wide = axes.x(time_s), len(name) * _LETTER
         line = f'x1="{x:.1f}" x2="{x:.1f}" y1="{_TOP}" y2="{_HEIGHT - _BOTTOM}"'
         parts.append(f'<line {line} stroke="{_GREY}" stroke-dasharray="2 3"/>')
-        parts.append(_text(x + 3, _HEIGHT - _BOTTOM - 5, name, "start" if x < _WIDTH - 120 else "end"))
+        begin = x + 3 if x + 3 + wide < _WIDTH else x - 3 - wide
+        taken = {row for first, last, row in written if first < begin + wide and begin < last}
+        row = next(row for row in range(len(written) + 1) if row not in taken)
+        written.append((begin, begin + wide, row))
+        base = _HEIGHT - _BOTTOM - 5 - row * _LINE
+        parts.append(_text(begin, base, name, "start") if begin > x else _text(x - 3, base, name, "end"))
     if drawing.violation_s is not None:
         place = min(max(round(drawing.violation_s / drawing.step_s), 0), len(drawing.values) - 1)
         x, value = axes.x(drawing.violation_s), drawing.values[place]
