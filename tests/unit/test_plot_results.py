@@ -16,6 +16,7 @@ from hilplant.identify.transfer_function import TransferFunction
 from hilplant.measurements.measurement import Measurement
 from hilplant.measurements.park_cases import park_cases
 from hilplant.plots.animation import Film, crank_angles
+from hilplant.plots.stall import Stall, draw_stalls
 from hilplant.recording.tables import write_table
 
 TIME_S = np.arange(8000) * 1e-3
@@ -120,3 +121,20 @@ def test_a_moving_picture_has_a_frame_for_each_instant_and_moves(run_csv: Path, 
         assert np.abs(np.asarray(film.convert("RGB")).astype(int) - first).max() > 100
     with pytest.raises(Failure, match=r"must be \.gif"):
         drawn("animation", str(run_csv), str(tmp_path / "film.mp4"))
+
+
+def test_a_stall_names_only_the_states_that_occur(tmp_path: Path) -> None:
+    states = np.repeat([0.0, 9.0, 20.0], 100)
+    signals = {
+        "current_a": 9.0 * (states == 9.0),
+        "winding_temperature_c": 60.0 + states,
+        "thermal_switch": 1.0 * (states > 9.0),
+    }
+    signals |= {"crank_speed_rad_s": 0.0 * states, "EcuState": states, "EcuFault": 0.0 * states}
+    draw_stalls([Stall("a run", 1e-3, signals, (10.0, 5.5), (150.0, 110.0))] * 2, tmp_path / "stall.svg")
+    text = (tmp_path / "stall.svg").read_text(encoding="utf-8")
+    assert [name for name in ("lockout", "slow", "off", "retry") if f"<!-- {name} -->" in text] == [
+        "lockout",
+        "slow",
+        "off",
+    ]
