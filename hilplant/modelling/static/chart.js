@@ -45,7 +45,9 @@ function marks(plot, places) {
     ctx.moveTo(at, bbox.top);
     ctx.lineTo(at, bbox.top + bbox.height);
     ctx.stroke();
-    ctx.fillText(text, at + 3, bbox.top + (10 + 13 * index) * devicePixelRatio);
+    const before = at > bbox.left + bbox.width / 2;
+    ctx.textAlign = before ? "right" : "left";
+    ctx.fillText(text, at + (before ? -3 : 3), bbox.top + (10 + 13 * index) * devicePixelRatio);
   }
   ctx.restore();
 }

@@ -9,7 +9,7 @@ import { store } from "./store.js";
 
 const SCREEN = ["plant", "screen"];
 const AIR = { "without spoiler": { drag: 0.175, lift: 0.0517 }, "with spoiler": { drag: 0.219, lift: -0.0694 } };
-const LINES = [["mu_dry", "dry", "s2"], ["mu_tacky", "tacky", "s5"], ["mu_wet", "wet", "s1"], ["mu_wet_5_n", "wet, 5 N", "s3"], ["mu_wet_10_n", "wet, 10 N", "s4"], ["mu_wet_15_n", "wet, 15 N", "s8"]];
+const LINES = [["mu_dry", "dry", "s2"], ["mu_tacky", "tacky", "s5"], ["mu_wet", "wet", "s1"], ["mu_wet_5_n", "wet, 5 N", "s3"], ["mu_wet_10_n", "wet, 10 N", "s4"], ["mu_wet_15_n", "wet, 15 N", "s7"]];
 
 export function environmentPanel() {
   const numbered = (name, count) => Object.fromEntries(Array.from({ length: count }, (_, index) => [`mu_${name}_${index + 1}`, { label: `u_${index + 1}` }]));

@@ -40,7 +40,7 @@ function design() {
   };
   listen(kind, refresh);
   refresh();
-  return element("div", {}, element("div", { class: "field" }, element("span", {}, "Select linkage design"), select), libraryChoice("linkage", "linkages"), kind);
+  return element("div", {}, element("div", { class: "stacked" }, element("span", {}, "Select linkage design"), select), libraryChoice("linkage", "linkages"), kind);
 }
 
 function pictures() {

@@ -84,7 +84,7 @@ function motorType() {
   });
   listen(select, refresh);
   refresh();
-  return element("div", { class: "field" }, element("span", {}, "Select motor type"), select);
+  return element("div", { class: "stacked" }, element("span", {}, "Select motor type"), select);
 }
 
 function diagram() {

@@ -50,7 +50,7 @@ function drawn(found, body, per, word) {
   const units = { "": ["m", "rad"], _s: ["m_s", "rad_s"], _s2: ["m_s2", "rad_s2"] }[per];
   const names = [[`${body}_x_${units[0]}`, "x"], [`${body}_y_${units[0]}`, "y"], [`${body}_angle_${units[1]}`, "angle"]].filter(([name]) => found.columns[name]);
   if (!names.length) return null;
-  const made = chart(`${word} of ${body}`, "time (s)", names.map(([name, label]) => ({ label: `${label} (${name.includes("rad") ? units[1] : units[0]})` })), { height: 190 });
+  const made = chart(`${word} of ${body}`, "time (s)", names.map(([name, label]) => ({ label: `${label} (${(name.includes("rad") ? units[1] : units[0]).replace("_", "/")})` })), { height: 190 });
   made.show([found.columns.time_s, ...names.map(([name]) => found.columns[name])]);
   return made;
 }
