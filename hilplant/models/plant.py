@@ -59,7 +59,6 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     joint, play = join(motion, crank, load, train, state.play)
     after, memory = move(joint, load, train, state)
     seen = read_current(motion.current, angle * actual.motor.gear_ratio, state.noise, actual.sensors)
-    outputs = measured(motion, crank, load, Seen(seen.current_a, contact.shown, memory.mode, state), train)
     # 5 slow states
     reached = within_turn(angle + after.turned / actual.motor.gear_ratio)
     slow = slow_after(crank, Reached(motion, after, within_turn(reached + play.ahead_rad)), train, state, parameters)
@@ -84,6 +83,7 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
         wear=slow.wear,
         water=slow.water,
     )
+    outputs = measured(motion, crank, load, Seen(seen.current_a, contact.shown, memory.mode, state), train)
     return hold_if_wrong(following, angle), outputs
 
 

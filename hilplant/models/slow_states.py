@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from hilplant.jit import compiled, compiled_apart
+from hilplant.jit import compiled
 from hilplant.models.armature import ArmatureMotion
 from hilplant.models.heat import Brushes, heated, losses, warmed
 from hilplant.models.linkage_faults import broken_at, without_lost_blades
@@ -100,7 +100,7 @@ def as_it_is(parameters: Parameters, state: State) -> Parameters:
     return changed(parameters, slowly)
 
 
-@compiled_apart
+@compiled
 def slowly_altered(parameters: Parameters, state: State) -> Altered:
     """Return what may change as it is where something of it has been altered."""
     motor, load, obstacles = parameters.motor, parameters.load, parameters.obstacles
