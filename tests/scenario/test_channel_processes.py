@@ -55,6 +55,8 @@ def test_a_command_is_there_from_the_tick_on_that_its_answer_tells(run: object) 
 
 
 def test_a_killed_client_changes_nothing_but_lets_go_of_what_it_held(run: object) -> None:
+    with hilplant.connect(CHANNEL) as earlier:
+        earlier.set("supply_v", 10.5)
     client = subprocess.Popen([sys.executable, "-c", CLIENT], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     assert client.stdout is not None
     tick = int(client.stdout.readline())
