@@ -23,7 +23,7 @@ from hilplant.control.seat import LoopSeat, Seat
 from hilplant.failure import Failure
 from hilplant.models.records import Motor
 from hilplant.resources import shipped
-from hilplant.runtime.clock import thread_cpu_ns, thread_waits
+from hilplant.runtime.clock import thread_cpu_ns, thread_cpu_step_ns, thread_waits
 from hilplant.units import MICROSECOND_NS, SECOND_NS
 
 #: Packages offer their controllers here: NAME = "module:function", a :data:`hilplant.control.own.Maker`.
@@ -154,4 +154,5 @@ def _made(name: str, function: Callable[..., Any], motor: Motor, period_s: float
 
 def _watch(choice: ControllerChoice, driven: Driven) -> Watch:
     half = round(driven.period_s * SECOND_NS / 2)
-    return Watch(half if choice.budget_us is None else choice.budget_us * MICROSECOND_NS, thread_cpu_ns, thread_waits)
+    budget_ns = half if choice.budget_us is None else choice.budget_us * MICROSECOND_NS
+    return Watch(budget_ns, thread_cpu_ns, thread_waits, thread_cpu_step_ns())

@@ -1,6 +1,7 @@
 """The clocks: the one file of the runtime that knows the wall clock, and the virtual clock that replaces it."""
 
 import time
+from itertools import pairwise
 from typing import Protocol
 
 try:
@@ -24,6 +25,16 @@ class Clock(Protocol):
 def thread_cpu_ns() -> int:
     """Return the processor time that this thread has had: what others take from it does not count."""
     return time.thread_time_ns()
+
+
+def thread_cpu_step_ns() -> int:
+    """Return the smallest step of that time: 10 ms where the kernel counts in ticks, as User Mode Linux does."""
+    seen = [thread_cpu_ns()]
+    while len(seen) < 4:
+        now = thread_cpu_ns()
+        if now > seen[-1]:
+            seen.append(now)
+    return min(later - earlier for earlier, later in pairwise(seen))
 
 
 def thread_waits() -> int:

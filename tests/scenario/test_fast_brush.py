@@ -59,6 +59,17 @@ def test_the_loop_does_what_the_study_does_bit_for_bit():
     assert np.array_equal(study["crank_speed_rad_s"], speed)
 
 
+@pytest.mark.parametrize("run", [in_the_loop, on_the_bus])
+def test_the_speed_of_the_shipped_steps_is_reached_by_the_same_measure_in_the_loop_and_on_the_bus(run: Any):
+    """Within 2 % in the mean of a turn, as docs/control.md tells; within a turn the bus leaves the load's ripple."""
+    speed, fast = run("cascade", "0:3.14,3:6.5,8:3.14", 1.0, SECONDS)
+    assert np.count_nonzero(np.diff(fast)) == 2
+    assert mean_of_turns(speed[5000:8000]) == pytest.approx(6.5, rel=0.001)
+    assert mean_of_turns(speed[11000:]) == pytest.approx(3.14, rel=0.001)
+    ripple = float(np.ptp(speed[5000:8000]))
+    assert ripple < (0.05 if run is in_the_loop else 1.0)
+
+
 STEPS = resources.shipped("config", "scenarios", "speed_steps.yaml")
 FASTER = """seconds: 8
 signals: {screen: [[0, wet]], reference_rad_s: [[0, 7.5]]}

@@ -19,7 +19,7 @@ from hilplant.control.records import Measured
 from hilplant.ecu.controller_choice import ControllerChoice, Driven, controller_file, own_maker, seat_on_bus
 from hilplant.failure import Failure
 from hilplant.resources import shipped
-from hilplant.runtime.clock import thread_cpu_ns, thread_waits
+from hilplant.runtime.clock import thread_cpu_ns, thread_cpu_step_ns, thread_waits
 
 MOTOR = load_bench("default").parameters.motor
 DRIVEN = Driven(MOTOR, 0.001)
@@ -71,6 +71,20 @@ def test_a_call_over_its_budget_stops_the_controller_for_good():
     assert slow.decide(0.001, SEEN) == (9.0, 1.0) or slow.stopped
     assert "took 600 us of processor time, more than its budget of 500 us" in slow.stopped
     assert slow.decide(0.002, SEEN) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(("shown_ms", "stopped"), [(10, False), (20, True)])
+def test_where_the_kernel_counts_in_ticks_only_a_time_that_is_certain_counts(shown_ms: int, stopped: bool):
+    """A call of a few microseconds that a tick of 10 ms falls into shows 10 ms; one that shows 20 took 10 at least."""
+    clock = iter([0, shown_ms * 1_000_000])
+    watch = Watch(500_000, lambda: next(clock), lambda: 0, 10_000_000)
+    own = OwnSeat(lambda motor, period_s: lambda reference, measured: (9.0, False), MOTOR, 0.001, lambda _: 3.0, watch)
+    own.decide(0.0, SEEN)
+    assert bool(own.stopped) is stopped
+
+
+def test_the_steps_of_the_thread_s_clock_are_those_of_the_kernel():
+    assert 0 < thread_cpu_step_ns() <= 20_000_000
 
 
 def slow_after_the_rehearsal(slow: Any) -> Any:
