@@ -1,4 +1,4 @@
-"""The option `--page [HOST:PORT]`: its address may be left out."""
+"""Where a page is served: `--page [HOST:PORT]` beside a run, where the address may be left out; else `--address`."""
 
 import re
 from pathlib import Path
@@ -16,6 +16,9 @@ _ADDRESS = re.compile(r"\d+|\S*:\d+")
 PageAddress = Annotated[
     str | None,
     typer.Option(_OPTION, metavar="[HOST:PORT]", help="serve a page for the operator  [127.0.0.1:8765]"),
+]
+PageServedAt = Annotated[
+    str, typer.Option("--address", metavar="HOST:PORT", help="where the page is served  [127.0.0.1:8765]")
 ]
 PageLogs = Annotated[Path, typer.Option("--logs", help="with --page: folder of what is logged on the page")]
 Stream = Annotated[

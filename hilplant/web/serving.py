@@ -73,10 +73,10 @@ def url_of(listening: socket.socket, access: Access) -> str:
 
 
 class _Server(uvicorn.Server):
-    """Ends on a signal without raising it again afterwards, so that who serves comes to the end of what he does."""
+    """Ends on a signal, or several, without raising it again, so that who serves comes to the end of what he does."""
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
-        self.force_exit, self.should_exit = self.should_exit, True
+        self.should_exit = True
 
 
 async def serve(

@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from hilplant.cli.groups import command_app
+from hilplant.cli.page_option import PageServedAt
 from hilplant.extras import need
 
 app = command_app()
@@ -15,9 +16,7 @@ def model(
     bench: Annotated[
         str, typer.Argument(help="a bench file, or the name of a shipped bench", metavar="BENCH")
     ] = "figure_8_3",
-    address: Annotated[
-        str, typer.Option(help="where the page is served, HOST:PORT or PORT  [default: 127.0.0.1:8765]")
-    ] = "",
+    address: PageServedAt = "",
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="open the page in the browser")] = True,
 ) -> None:
     """Describe, check and identify a wiper on a page; make a bench.

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from hilplant.cli.groups import command_app
+from hilplant.cli.page_option import PageServedAt
 from hilplant.extras import need
 
 app = command_app()
@@ -14,7 +15,7 @@ app = command_app()
 @app.command(epilog="Example: hilplant page run.hilrec --browser")
 def page(  # noqa: PLR0913, PLR0917
     recording: Annotated[Path, typer.Argument(help="the recording to look at")],
-    address: Annotated[str, typer.Option("--at", metavar="HOST:PORT", help="where to serve  [127.0.0.1:8765]")] = "",
+    address: PageServedAt = "",
     bench: Annotated[str | None, typer.Option(help="its bench; the one of its name if left out")] = None,
     from_s: Annotated[float, typer.Option("--from", min=0.0, help="from this time on [s]")] = 0.0,
     to_s: Annotated[float, typer.Option("--to", help="up to this time [s]")] = float("inf"),
