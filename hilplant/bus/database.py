@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from hilplant.bus.frame_layout import CLASSIC_BYTES
 from hilplant.bus.lean_import import without_asammdf
 from hilplant.bus.sound_dbc import LeftOut, sound_part
+from hilplant.bus.sound_sections import sound_sections
 from hilplant.failure import Failure
 
 if TYPE_CHECKING:
@@ -63,8 +64,7 @@ def load_sound(path: str | Path) -> tuple[Database, tuple[LeftOut, ...]]:
     except _DiagnosticsError:
         raise DatabaseError(f"{path} holds diagnostics, not messages") from None
     except Exception as error:  # cantools' parsers let errors of every kind through
-        reason = _WITHOUT_CONTENT.sub(r"\1", " ".join(str(error).split())) or type(error).__name__
-        raise DatabaseError(f"{path} cannot be read as a bus database: {reason}") from error
+        raise DatabaseError(f"{path} cannot be read as a bus database: {_reason(error)}") from error
 
 
 def _text(content: bytes, ending: str) -> str:
@@ -81,17 +81,37 @@ class _DiagnosticsError(Exception):
 
 
 def _parsed(text: str, ending: str) -> tuple[Database, tuple[LeftOut, ...]]:
-    """Read a text; of a DBC that is refused, what can be read."""
+    """Read a text; of one that is refused, what can be read."""
     try:
         return _strictly(text, ending), ()
     except Exception:
-        sound, left_out = sound_part(text) if ending == "dbc" else (text, [])
+        if ending == "dbc":
+            sound, left_out = sound_part(text)
+        else:
+            sound, left_out = sound_sections(text, ending, lambda part: _refusal(part, ending))
         if not left_out:
             raise
         database = _strictly(sound, ending)
         if not database.messages:
             raise
         return database, tuple(left_out)
+
+
+def _refusal(text: str, ending: str) -> str:
+    """Return why a text cannot be read, nothing when it can."""
+    try:
+        _strictly(text, ending)
+    except Exception as error:  # cantools' parsers let errors of every kind through
+        cause = getattr(error, f"e_{ending}", None) or error
+        if isinstance(cause, KeyError):
+            return f"{cause} is not there"
+        return "something that it needs is missing" if isinstance(cause, TypeError) else _reason(cause)
+    return ""
+
+
+def _reason(error: Exception) -> str:
+    """Return in one line what a parser says, without what it quotes of the file."""
+    return _WITHOUT_CONTENT.sub(r"\1", " ".join(str(error).split())) or type(error).__name__
 
 
 def _strictly(text: str, ending: str) -> Database:
