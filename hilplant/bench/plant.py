@@ -102,12 +102,19 @@ def _blades(spot: Spot, section: BladesSection | None) -> Blades | None:
 
 
 def _has_sound_air(spot: Spot, entry: BladeEntry) -> bool:
-    try:
-        check_aerodynamics(f"{spot.name} blade", _air(entry))
-    except Failure as error:
-        spot.note(text=str(error))
-        return False
-    return True
+    parts = {
+        "area_m2": Aerodynamics(entry.area_m2),
+        "drag": Aerodynamics(drag=entry.drag),
+        "lift": Aerodynamics(lift=entry.lift),
+    }
+    sound = True
+    for key, air in parts.items():
+        try:
+            check_aerodynamics(f"{spot.name} blade", air)
+        except Failure as error:
+            spot.note(key, text=str(error))
+            sound = False
+    return sound
 
 
 def _air(entry: BladeEntry) -> Aerodynamics:

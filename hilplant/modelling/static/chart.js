@@ -36,7 +36,6 @@ function marks(plot, places) {
   const { ctx, bbox } = plot;
   ctx.save();
   ctx.strokeStyle = colour("dim");
-  ctx.fillStyle = colour("dim");
   ctx.setLineDash([4, 4]);
   for (const [index, [x, text]] of places.entries()) {
     const at = plot.valToPos(x, "x", true);
@@ -46,8 +45,12 @@ function marks(plot, places) {
     ctx.lineTo(at, bbox.top + bbox.height);
     ctx.stroke();
     const before = at > bbox.left + bbox.width / 2;
+    const [left, down, wide] = [at + (before ? -3 : 3), bbox.top + (10 + 13 * index) * devicePixelRatio, ctx.measureText(text).width];
     ctx.textAlign = before ? "right" : "left";
-    ctx.fillText(text, at + (before ? -3 : 3), bbox.top + (10 + 13 * index) * devicePixelRatio);
+    ctx.fillStyle = colour("panel");
+    ctx.fillRect(before ? left - wide - 2 : left - 2, down - 9 * devicePixelRatio, wide + 4, 12 * devicePixelRatio);
+    ctx.fillStyle = colour("dim");
+    ctx.fillText(text, left, down);
   }
   ctx.restore();
 }

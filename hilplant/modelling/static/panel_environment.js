@@ -2,6 +2,7 @@
 import { api } from "/shared/access.js";
 import { element, figure } from "/shared/dom.js";
 import { chart } from "./chart.js";
+import { coefficient } from "./coefficient.js";
 import { field, listen } from "./field.js";
 import { form, group } from "./form.js";
 import { libraryChoice } from "./library.js";
@@ -28,9 +29,8 @@ function air() {
   } }, name));
   const sides = ["left", "right"].map((side) => {
     const at = ["plant", "blades", side];
-    const number = (key) => typeof store.get([...at, key]) !== "object" || store.get([...at, key]) === null;
     return element("fieldset", {}, element("legend", {}, side), field([...at, "force_n"], { label: "Blade force" }), field([...at, "area_m2"], { label: "Blade area" }),
-      ...["drag", "lift"].map((key) => (number(key) ? field([...at, key], { label: `${key} coefficient` }) : element("p", { class: "dim" }, `${key}: a table over the arm's angle, in the text`))), field([...at, "wear"], { label: "wear" }));
+      ...["drag", "lift"].map((key) => coefficient([...at, key], `${key} coefficient`)), field([...at, "wear"], { label: "wear" }));
   });
   return element("div", {}, element("div", { class: "row" }, "section 4.5:", ...buttons), ...sides);
 }

@@ -3,6 +3,8 @@ import { element, figure, say } from "/shared/dom.js";
 import { colour } from "/shared/theme.js";
 
 const COLOURS = ["s1", "s2", "s3", "s4", "s5", "s6", "s7", "s8"];
+// Width of an axis at a side and of its label [px]: equal in all charts, so that their times stand under each other.
+const [SIDE, LABEL] = [68, 16];
 
 export class Chart {
   // `plots` has the common time axis: range(), zoom(from, to), live(), cursors, changed().
@@ -29,16 +31,18 @@ export class Chart {
     const scales = { x: { time: false, auto: false } };
     for (const unit of units) scales[unit] = unit === "flag" ? { range: [-0.1, 1.1] } : { range: padded };
     const axis = { stroke: colour("dim"), grid: { stroke: colour("edge"), width: 0.5 }, ticks: { stroke: colour("edge") }, font: "11px system-ui" };
-    const sides = units.slice(0, 2).map((unit, i) => ({
-      ...axis, scale: unit, side: i ? 1 : 3, size: 52, grid: { ...axis.grid, show: i === 0 },
-      label: unit === "flag" || unit === "choice" || unit === "1" ? undefined : unit, labelSize: 16, labelFont: "11px system-ui",
-    }));
+    const sides = units.slice(0, 2).map((unit, i) => {
+      const label = unit === "flag" || unit === "choice" || unit === "1" ? undefined : unit;
+      return { ...axis, scale: unit, side: i ? 1 : 3, size: label ? SIDE - LABEL : SIDE, grid: { ...axis.grid, show: i === 0 }, label, labelSize: LABEL, labelFont: "11px system-ui" };
+    });
+    this.right = sides.length > 1;
     this.plot = new uPlot({
       width: Math.max(100, this.canvas.clientWidth),
       height: Math.max(80, this.canvas.clientHeight),
       legend: { show: false },
       cursor: { sync: { key: "hilplant", setSeries: false }, drag: { x: true, y: false, setScale: false }, points: { show: false } },
       scales,
+      padding: [null, () => (this.plots.charts.some((each) => each.right) ? (this.right ? 0 : SIDE) : 12), null, null],
       axes: [{ ...axis, size: 28, values: (_, ticks) => ticks.map((tick) => `${+tick.toFixed(3)}`) }, ...sides],
       series: [{}, ...this.names.map((name, i) => this.series(name, i))],
       hooks: {
