@@ -32,20 +32,23 @@ export function chart(title, x, series, options = {}) {
   return box;
 }
 
+// Lines first, so that none of them goes through a text.
 function marks(plot, places) {
   const { ctx, bbox } = plot;
+  const shown = places.map(([x, text], index) => ({ at: plot.valToPos(x, "x", true), text, down: bbox.top + (10 + 13 * index) * devicePixelRatio }))
+    .filter(({ at }) => at >= bbox.left && at <= bbox.left + bbox.width);
   ctx.save();
   ctx.strokeStyle = colour("dim");
   ctx.setLineDash([4, 4]);
-  for (const [index, [x, text]] of places.entries()) {
-    const at = plot.valToPos(x, "x", true);
-    if (at < bbox.left || at > bbox.left + bbox.width) continue;
+  for (const { at } of shown) {
     ctx.beginPath();
     ctx.moveTo(at, bbox.top);
     ctx.lineTo(at, bbox.top + bbox.height);
     ctx.stroke();
+  }
+  for (const { at, text, down } of shown) {
     const before = at > bbox.left + bbox.width / 2;
-    const [left, down, wide] = [at + (before ? -3 : 3), bbox.top + (10 + 13 * index) * devicePixelRatio, ctx.measureText(text).width];
+    const [left, wide] = [at + (before ? -3 : 3), ctx.measureText(text).width];
     ctx.textAlign = before ? "right" : "left";
     ctx.fillStyle = colour("panel");
     ctx.fillRect(before ? left - wide - 2 : left - 2, down - 9 * devicePixelRatio, wide + 4, 12 * devicePixelRatio);

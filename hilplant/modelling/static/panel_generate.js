@@ -35,13 +35,13 @@ function ownData(what) {
   if (what === "torque") {
     const [data, validation] = ["data", "validation"].map((text) => choice([["", `own ${text} ...`]], { "aria-label": `${what} ${text}` }));
     for (const select of [data, validation]) offer(select);
-    return { node: element("span", {}, data, validation), chosen: () => ({ data: data.value || null, validation: validation.value || null }) };
+    return { node: element("span", { class: "row" }, data, validation), chosen: () => ({ data: data.value || null, validation: validation.value || null }) };
   }
   if (what === "motor") {
     const [slow, fast] = ["slow", "fast"].map((mode) => choice([["", `own data, ${mode} ...`]], { "aria-label": `${what} ${mode}` }));
     for (const select of [slow, fast]) offer(select);
     const named = [[slow, "slow"], [fast, "fast"]];
-    return { node: element("span", {}, slow, fast), chosen: () => ({ data: named.filter(([select]) => select.value).map(([select, mode]) => ({ name: select.value, mode })) }) };
+    return { node: element("span", { class: "row" }, slow, fast), chosen: () => ({ data: named.filter(([select]) => select.value).map(([select, mode]) => ({ name: select.value, mode })) }) };
   }
   return { node: null, chosen: () => ({}) };
 }
