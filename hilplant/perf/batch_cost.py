@@ -3,9 +3,7 @@
 import os
 import time
 from collections.abc import Callable
-from pathlib import Path
 from statistics import median
-from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -32,14 +30,13 @@ def measure() -> PartResult:
     bench = bench_with("reduced")
     inputs = mixed_minute().input_rows(bench.input_row, bench.step_ns)[_TICKS]
     parameters = shaken_sets(bench, SETS)
-    with TemporaryDirectory(prefix="hilplant-c-") as folder:
-        ways = [_ours, compile_batch(Path(folder), [OUTPUT_INDEX[name] for name in _COLUMNS])]
-        results = [np.empty((SETS, len(inputs), len(_COLUMNS))) for _ in ways]
-        jobs = [_job(way, bench, inputs, parameters, result) for way, result in zip(ways, results, strict=True)]
-        for job in jobs:
-            job()
-        differences = worst_difference(results)
-        ours, limits = alternate(_ROUNDS, *jobs)
+    ways = [_ours, compile_batch([OUTPUT_INDEX[name] for name in _COLUMNS])]
+    results = [np.empty((SETS, len(inputs), len(_COLUMNS))) for _ in ways]
+    jobs = [_job(way, bench, inputs, parameters, result) for way, result in zip(ways, results, strict=True)]
+    for job in jobs:
+        job()
+    differences = worst_difference(results)
+    ours, limits = alternate(_ROUNDS, *jobs)
     million = SETS * len(inputs) / 1e6
     ours_ns, limit_ns = median(ours) * 1e3 / million, median(limits) * 1e3 / million
     processors = len(os.sched_getaffinity(0))

@@ -4,6 +4,7 @@ import ctypes
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,16 @@ from hilplant.models.batch import simulate_columns
 from hilplant.models.torque_samples import network_tangents
 from hilplant.perf.results import NotMeasurable
 
-__all__ = ["FLAGS", "SimulateRows", "Tangents", "compile_batch", "compile_network", "compile_step", "compiler"]
-
-WITH_OPENMP = "-fopenmp"
+__all__ = [
+    "FLAGS",
+    "SimulateRows",
+    "Tangents",
+    "compile_batch",
+    "compile_network",
+    "compile_step",
+    "compiler",
+    "library",
+]
 
 #: State, inputs [ticks, inputs], parameters, tables, outputs [ticks, outputs].
 SimulateRows = Callable[[Floats, Floats, Floats, Floats, Floats], None]
@@ -61,9 +69,9 @@ def compiler() -> str:
         raise NotMeasurable(str(error)) from error
 
 
-def compile_step(folder: Path, *more_flags: str) -> SimulateRows:
-    """Compile the step into `folder` and return its loop, which takes the same arrays as `simulate_rows`."""
-    function = _library(folder, more_flags).hilplant_simulate
+def compile_step(*more_flags: str) -> SimulateRows:
+    """Compile the step and return its loop, which takes the same arrays as `simulate_rows`."""
+    function = library(*more_flags).hilplant_simulate
 
     def simulate(state: Floats, inputs: Floats, parameters: Floats, tables: Floats, outputs: Floats) -> None:
         plant = CompiledPlant.of(parameters, tables)
@@ -72,13 +80,13 @@ def compile_step(folder: Path, *more_flags: str) -> SimulateRows:
     return simulate
 
 
-def compile_batch(folder: Path, columns: Sequence[int], *more_flags: str) -> SimulateRows:
-    """Compile the step with OpenMP and return its loop over many sets on all processors.
+def compile_batch(columns: Sequence[int]) -> SimulateRows:
+    """Compile the step and return its loop over many sets on all processors.
 
     It takes states [sets, states], inputs [ticks, inputs] of all sets, parameters [sets, parameters], tables of all
     sets, and outputs [sets, ticks, columns], of which it fills those outputs whose indices are in `columns`.
     """
-    function = _library(folder, (WITH_OPENMP, *more_flags)).simulate_batch
+    function = library().simulate_batch
     indices = (ctypes.c_int64 * len(columns))(*columns)
 
     def simulate(states: Floats, inputs: Floats, parameters: Floats, tables: Floats, outputs: Floats) -> None:
@@ -89,9 +97,9 @@ def compile_batch(folder: Path, columns: Sequence[int], *more_flags: str) -> Sim
     return simulate
 
 
-def compile_network(folder: Path, *more_flags: str) -> Tangents:
-    """Compile the torque network into `folder`; the function takes the same arrays as `network_tangents`."""
-    function = _library(folder, more_flags).torque_tangents
+def compile_network() -> Tangents:
+    """Compile the torque network; the function takes the same arrays as `network_tangents`."""
+    function = library().torque_tangents
 
     def tangents(numbers: Floats, wet: bool, states: Floats, into: Floats) -> None:
         length, count = ctypes.c_int64(len(numbers)), ctypes.c_int64(len(states))
@@ -101,13 +109,15 @@ def compile_network(folder: Path, *more_flags: str) -> Tangents:
 
 
 @cache
-def _texts() -> tuple[str, str]:
-    return plant_c(_MORE, Path(__file__).with_name("measured.c").read_text(encoding="utf-8")), plant_h()
+def library(*more_flags: str) -> ctypes.CDLL:
+    """Compile the step and what is measured besides it, once in a process, and load it.
 
-
-def _library(folder: Path, more_flags: tuple[str, ...]) -> ctypes.CDLL:
+    Raises `NotMeasurable` when there is no compiler.
+    """
+    text = plant_c(_MORE, Path(__file__).with_name("measured.c").read_text(encoding="utf-8"))
     try:
-        return compile_library(*_texts(), folder, *more_flags)
+        with TemporaryDirectory(prefix="hilplant-c-") as folder:
+            return compile_library(text, plant_h(), Path(folder), "-fopenmp", *more_flags)
     except Failure as error:
         raise NotMeasurable(str(error)) from error
 

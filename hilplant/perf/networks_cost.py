@@ -1,9 +1,7 @@
 """What a minute costs with networks in place of load and motor, against the same in C."""
 
 import time
-from pathlib import Path
 from statistics import median
-from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -35,10 +33,9 @@ def calm_minute(bench: Bench) -> Floats:
 def measure() -> PartResult:
     """Run a calm minute with each kind of network, in turn by both languages; start-up apart."""
     measured = PartResult()
-    with TemporaryDirectory(prefix="hilplant-c-") as folder:
-        in_c = compile_step(Path(folder))
-        for name in _BENCHES:
-            _measure_bench(name, in_c, measured)
+    in_c = compile_step()
+    for name in _BENCHES:
+        _measure_bench(name, in_c, measured)
     return measured
 
 

@@ -1,9 +1,7 @@
 """What one evaluation of the torque network costs in compiled Python, against the same in C."""
 
 import time
-from pathlib import Path
 from statistics import median
-from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -25,9 +23,8 @@ def measure() -> PartResult:
     numbers, random = np.ascontiguousarray(bench.parameters.networks), np.random.default_rng(1)
     states = np.column_stack([random.uniform(0.0, TURN_RAD, _SAMPLES), random.uniform(1.0, 7.0, _SAMPLES)])
     into = np.empty((_SAMPLES, 3))
-    with TemporaryDirectory(prefix="hilplant-c-") as folder:
-        ways = (network_tangents, compile_network(Path(folder)))
-        seconds = alternate(_ROUNDS, *(lambda way=way: _timed_s(way, numbers, states, into) for way in ways))
+    ways = (network_tangents, compile_network())
+    seconds = alternate(_ROUNDS, *(lambda way=way: _timed_s(way, numbers, states, into) for way in ways))
     ours_ns, c_ns = (median(values) / _SAMPLES * SECOND_NS for values in seconds)
     rows = [
         Row("torque network", ours_ns, "ns", c_ns, "C", _GOAL),

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -94,12 +93,11 @@ def compare(seconds: float) -> list[Compared]:
     truths = {name: finer_current(bench) for name, bench in physical.items()}
     runs = {name: drive(bench, seconds, look_ms=1.0) for name, bench in physical.items()}
     found = []
-    with TemporaryDirectory(prefix="hilplant-c-") as folder:
-        in_c = compile_step(Path(folder))
-        for name, pair in pairs.items():
-            wanted = runs[pair.physical.name]
-            ours = wanted if pair.bench is pair.physical else drive(pair.bench, seconds, look_ms=1.0)
-            found.append(_compared(name, pair.bench, in_c, truths[pair.physical.name], ours, wanted))
+    in_c = compile_step()
+    for name, pair in pairs.items():
+        wanted = runs[pair.physical.name]
+        ours = wanted if pair.bench is pair.physical else drive(pair.bench, seconds, look_ms=1.0)
+        found.append(_compared(name, pair.bench, in_c, truths[pair.physical.name], ours, wanted))
     return found
 
 

@@ -2,8 +2,6 @@
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -181,13 +179,12 @@ def speed_line(bench: Bench, figures: dict[str, Any], sets: int = 40, rounds: in
     def ours(states: Floats, inputs: Floats, rows: Floats, tables: Floats, output: Floats) -> None:
         simulate_batch(states, inputs, rows, tables, columns, output)
 
-    with TemporaryDirectory(prefix="hilplant-c-") as folder:
-        try:
-            in_c = compile_batch(Path(folder), columns)
-        except NotMeasurable as missing:
-            rate = sets / min(_population_s(ours, bench, runs, sets) for _ in range(rounds))
-            return f"{rate:.0f} evaluations of {steps} steps a second; C beside it: {missing}"
-        pairs = [[_population_s(way, bench, runs, sets) for way in (ours, in_c)] for _ in range(rounds)]
+    try:
+        in_c = compile_batch(columns)
+    except NotMeasurable as missing:
+        rate = sets / min(_population_s(ours, bench, runs, sets) for _ in range(rounds))
+        return f"{rate:.0f} evaluations of {steps} steps a second; C beside it: {missing}"
+    pairs = [[_population_s(way, bench, runs, sets) for way in (ours, in_c)] for _ in range(rounds)]
     rates = sets / np.min(pairs, axis=0)
     figures |= {"batch_evaluations_per_s": float(rates[0]), "batch_c_evaluations_per_s": float(rates[1])}
     return f"{rates[0]:.0f} evaluations of {steps} steps a second on all processors; the same in C: {rates[1]:.0f}"

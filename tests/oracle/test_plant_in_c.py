@@ -1,7 +1,6 @@
 """The step in C and the compiled Python give the same bits, through every branch of the step."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,7 +18,6 @@ from hilplant.simulation.batch import simulate_batch
 Rows = NDArray[np.float64]
 Random = np.random.Generator
 
-WARNINGS = ("-Wall", "-Wextra", "-Werror")
 #: Loads without networks, by the number that ``Load.model`` gives them.
 LOADS = {"none": 0.0, "polynomial": 1.0, "reduced": 2.0}
 TABLES = {
@@ -34,8 +32,8 @@ BLOCKS = 120
 
 
 @pytest.fixture(scope="module")
-def step_in_c(tmp_path_factory: pytest.TempPathFactory) -> SimulateRows:
-    return compile_step(tmp_path_factory.mktemp("c"), *WARNINGS)
+def step_in_c() -> SimulateRows:
+    return compile_step()
 
 
 def any_motor(random: Random) -> Motor:
@@ -131,9 +129,10 @@ def test_the_random_scenarios_reach_every_branch(step_in_c: SimulateRows) -> Non
         random = np.random.default_rng(seed)
         plant, inputs = any_plant(random, "reduced", "depressed"), any_inputs(random)
         state, outputs = pack(State(0.0, 0.0, 1.0, 0.0, 0.0, 0.0)), np.empty((len(inputs), len(OUTPUTS)))
+        parameters, tables = pack(plant), TABLES[int(plant.load.points)]
         for tick in range(len(inputs)):
             row = slice(tick, tick + 1)
-            step_in_c(state, inputs[row], pack(plant), TABLES[int(plant.load.points)], outputs[row])
+            step_in_c(state, inputs[row], parameters, tables, outputs[row])
             phases.add(float(state[STATE_INDEX["park_phase"]]))
         seen.append(outputs)
     column = {name: np.concatenate([rows[:, place] for rows in seen]) for name, place in OUTPUT_INDEX.items()}
@@ -146,7 +145,7 @@ def test_the_random_scenarios_reach_every_branch(step_in_c: SimulateRows) -> Non
     assert set(np.unique(column["park_contact"])) == {0.0, 1.0}
 
 
-def test_the_batch_in_c_is_the_batch(tmp_path: Path) -> None:
+def test_the_batch_in_c_is_the_batch() -> None:
     """The batch in C does the same work: the same columns of the same sets, bit for bit."""
     random = np.random.default_rng(3)
     plants = [any_plant(random, load, "digital") for load in LOADS for _ in range(4)]
@@ -156,7 +155,7 @@ def test_the_batch_in_c_is_the_batch(tmp_path: Path) -> None:
     ours, theirs = np.full((2, len(plants), len(inputs), len(columns)), math.nan)
     our_states, their_states = np.array([[pack(State(0.0, 0.0, 1.0, 0.0, 0.0, 0.0))] * len(plants)] * 2)
     simulate_batch(our_states, inputs, parameters, TABLES[1], columns, ours)
-    compile_batch(tmp_path, columns, *WARNINGS)(their_states, inputs, parameters, TABLES[1], theirs)
+    compile_batch(columns)(their_states, inputs, parameters, TABLES[1], theirs)
     assert ours.tobytes() == theirs.tobytes()
     assert our_states.tobytes() == their_states.tobytes()
     assert np.ptp(ours[:, :, 0]) > 0.1

@@ -8,26 +8,19 @@ import pytest
 from support.random_ticks import by_ticks, random_inputs, random_states
 
 from hilplant.bench import load_bench
-from hilplant.c_source.compiler import compile_library
-from hilplant.c_source.plant_files import plant_c, plant_h
-from hilplant.perf.c_step import CompiledPlant
+from hilplant.perf.c_step import CompiledPlant, library
 from hilplant.signals import OUTPUT_INDEX
 
 BENCHES = sorted(path.stem for path in (Path(__file__).parents[2] / "config" / "benches").glob("*.yaml"))
 TICKS = 4000
 
 
-@pytest.fixture(scope="module")
-def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
-    return compile_library(plant_c(), plant_h(), tmp_path_factory.mktemp("c"), "-Wall", "-Wextra", "-Werror")
-
-
 @pytest.mark.parametrize("name", BENCHES)
-def test_a_tick_from_anywhere_is_the_same(name: str, library: ctypes.CDLL) -> None:
+def test_a_tick_from_anywhere_is_the_same(name: str) -> None:
     bench, random = load_bench(name), np.random.default_rng(BENCHES.index(name))
     states, inputs = random_states(TICKS, random), random_inputs(bench, TICKS, random)
     plant = CompiledPlant.of(bench.parameter_row, bench.tables)
-    ours, theirs = by_ticks(bench, states, inputs), by_ticks(bench, states, inputs, library, ctypes.byref(plant))
+    ours, theirs = by_ticks(bench, states, inputs), by_ticks(bench, states, inputs, library(), ctypes.byref(plant))
     differing = np.flatnonzero((ours.view(np.int64) != theirs.view(np.int64)).any(axis=1))
     assert not differing.size, f"{differing.size} ticks, the first from {states[differing[0]]}, {inputs[differing[0]]}"
     guard, speed = ours[:, OUTPUT_INDEX["guard"]], ours[:, OUTPUT_INDEX["motor_speed_rad_s"]]
