@@ -75,11 +75,3 @@ def wait_until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
     while not condition() and time.monotonic() < deadline:
         time.sleep(0.05)
     return condition()
-
-
-def row_before_end(recording: Path, distance: int) -> dict[str, Any]:
-    from hilplant.recording.reader import read_recording
-
-    table = read_recording(recording).table()
-    row: dict[str, Any] = table.slice(len(table) - 1 - distance).to_pylist()[0]
-    return row

@@ -9,6 +9,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -79,9 +80,9 @@ class Spawned:
         self._output.close()
 
 
-@pytest.fixture
-def spawn(request: pytest.FixtureRequest) -> Iterator[Callable[..., Spawned]]:
-    """Start a program; it is ended after the test, and its output shown when the test failed."""
+@contextmanager
+def spawning() -> Iterator[Callable[..., Spawned]]:
+    """Start programs; they are ended afterwards, and their output shown when a test failed."""
     started: list[Spawned] = []
 
     def start(*words: object) -> Spawned:
@@ -92,6 +93,13 @@ def spawn(request: pytest.FixtureRequest) -> Iterator[Callable[..., Spawned]]:
     for program in started:
         print(f"--- {' '.join(program.words)}\n{program.output[-4000:]}")
         program.close()
+
+
+@pytest.fixture
+def spawn() -> Iterator[Callable[..., Spawned]]:
+    """Start a program; it is ended after the test."""
+    with spawning() as start:
+        yield start
 
 
 class Candump:
@@ -189,3 +197,13 @@ def server(spawn: Callable[..., Any], vcan: str, tmp_path: Path) -> Any:
     daemon = spawn(*HILPLANT, "run", SOFT_TIME, "--record", tmp_path / "run.hilrec")
     daemon.wait_for("serves on", START_PATIENCE_S)
     return daemon
+
+
+@pytest.fixture(scope="module")
+def shared_server() -> Iterator[Spawned]:
+    """The daemon on the default bench for all tests of a file that leave it running: a start takes a guest long."""
+    with spawning() as start:
+        daemon = start(*HILPLANT, "run", SOFT_TIME)
+        daemon.wait_for("serves on", START_PATIENCE_S)
+        yield daemon
+        assert daemon.end(patience_s=PATIENCE_S) == 0

@@ -1,6 +1,7 @@
 """The daemon on a real SocketCAN that misbehaves: clients that stop, links that go down, queues, floods."""
 
 import json
+import os
 import platform
 import subprocess
 import sys
@@ -18,13 +19,12 @@ from support.can_utils import (
     Commander,
     last,
     observed,
-    row_before_end,
     wait_until,
 )
 
 
 def test_a_client_that_stops_mid_way_leaves_the_wiper_in_the_safe_state(
-    candump: Any, server: Any, commander: Commander
+    candump: Any, shared_server: Any, commander: Commander
 ) -> None:
     commander.hold(SLOW)
     assert wait_until(lambda: last(candump, "MotorStatus")["CrankSpeed"] > 3.0)
@@ -33,11 +33,11 @@ def test_a_client_that_stops_mid_way_leaves_the_wiper_in_the_safe_state(
     assert wait_until(lambda: last(candump, "MotorStatus")["TerminalVoltage"] == 0.0)
     assert wait_until(lambda: abs(last(candump, "MotorStatus")["CrankSpeed"]) < 1e-3)
     assert wait_until(lambda: last(candump, "LinkFaults")["Timeouts"] >= 1)
-    assert server.end(patience_s=PATIENCE_S) == 0
+    assert shared_server.process.poll() is None
 
 
 def test_the_link_goes_down_and_up_ten_times_and_the_loop_ticks_on(
-    candump: Any, server: Any, vcan: str, cansend: Callable[[str], None], tmp_path: Path
+    candump: Any, shared_server: Any, vcan: str, cansend: Callable[[str], None]
 ) -> None:
     candump.wait_for(" 210#", count=2)
     for _ in range(10):
@@ -45,13 +45,12 @@ def test_the_link_goes_down_and_up_ten_times_and_the_loop_ticks_on(
         time.sleep(0.15)
         subprocess.run(["ip", "link", "set", vcan, "up"], check=True)
         time.sleep(0.6)
+    assert shared_server.process.poll() is None
+    candump.lines.clear()
     cansend(SLOW)
-    assert server.process.poll() is None
-    assert server.end(patience_s=PATIENCE_S) == 0
-    counts = row_before_end(tmp_path / "run.hilrec", 1)  # the last row is the stop itself, relays open
-    print(f"counted {counts['status.link_down']:.0f} losses of the link in {counts['status.tick']:.0f} ticks")
-    assert counts["status.link_down"] == 10
-    assert counts["out.terminal_v"] == 13.5, "the command after the last recovery was taken"
+    assert wait_until(lambda: bool(observed(candump, "MotorStatus")) and bool(observed(candump, "LinkFaults")))
+    assert wait_until(lambda: last(candump, "MotorStatus")["TerminalVoltage"] == 13.5), "the last command was taken"
+    assert last(candump, "LinkFaults")["LinkDown"] == 10
 
 
 def throttle(interface: str) -> None:
@@ -64,11 +63,11 @@ def throttle(interface: str) -> None:
         subprocess.run(words, check=True)
 
 
-def test_a_full_queue_drops_and_counts_frames_and_the_bus_recovers(candump: Any, server: Any, vcan: str) -> None:
+def test_a_full_queue_drops_and_counts_frames_and_the_bus_recovers(candump: Any, shared_server: Any, vcan: str) -> None:
     candump.wait_for(" 200#", count=20)
     throttle(vcan)
     time.sleep(2.0)
-    assert server.process.poll() is None
+    assert shared_server.process.poll() is None
     subprocess.run(["tc", "qdisc", "del", "dev", vcan, "root"], check=True)
     candump.lines.clear()
     candump.wait_for(" 213#", count=3)  # the first may have been under way before
@@ -76,9 +75,10 @@ def test_a_full_queue_drops_and_counts_frames_and_the_bus_recovers(candump: Any,
     print(f"{dropped[-1]} frames dropped in 2 s at 60 frames a second")
     assert dropped[-1] > 50
     assert dropped[-1] == dropped[-2], "nothing is dropped any more"
-    assert server.end(patience_s=PATIENCE_S) == 0
 
 
+#: As many as a guest takes in half a minute; `HILPLANT_FLOOD=1000000` for more.
+FRAMES = int(os.environ.get("HILPLANT_FLOOD", "200000"))
 FLOOD = """
 import random, socket, struct, sys
 
@@ -124,16 +124,16 @@ def dropped_by_the_kernel() -> int:
     return sum(int(row.split()[1], 16) for row in rows)
 
 
-@pytest.mark.timeout(900)  # a minute on an idle machine
-def test_a_flood_of_a_million_random_frames_leaves_the_loop_running(
+@pytest.mark.timeout(900)
+def test_a_flood_of_random_frames_leaves_the_loop_running(
     plant_frames: Any, spawn: Callable[..., Any], tmp_path: Path, cansend: Callable[[str], None]
 ) -> None:
     server = spawn(*HILPLANT, "run", SOFT_TIME, "--json", tmp_path / "run.json")
     plant_frames.wait_for(" 210#", count=2, patience_s=60)
     dropped_before = dropped_by_the_kernel()
-    flood = spawn(sys.executable, "-c", FLOOD, "1000000")
-    flood.wait_for("flooded 1000000", 800)
-    wrong = 1_000_000 - int(flood.output.split()[-1])
+    flood = spawn(sys.executable, "-c", FLOOD, str(FRAMES))
+    flood.wait_for(f"flooded {FRAMES}", 800)
+    wrong = FRAMES - int(flood.output.split()[-1])
     assert server.process.poll() is None, "the daemon lives"
     assert wait_until(lambda: str(last(plant_frames, "PlantStatus")["Mode"]) == "Safe")
     plant_frames.lines.clear()
@@ -148,15 +148,3 @@ def test_a_flood_of_a_million_random_frames_leaves_the_loop_running(
     print(f"{counts}, missed {missed}, dropped {dropped}, of {wrong} wrong frames in {figures['ticks']} ticks")
     assert all(counts.values())
     assert sum(counts.values()) <= wrong <= sum(counts.values()) + missed + dropped, "each by its cause, or as missed"
-
-
-def test_a_run_with_random_frames_replays_bit_for_bit(
-    server: Any, spawn: Callable[..., Any], vcan: str, tmp_path: Path
-) -> None:
-    subprocess.run(["cangen", vcan, "-I", "120", "-L", "2", "-D", "r", "-n", "300", "-g", "5"], check=True)
-    subprocess.run(["cangen", vcan, "-I", "121", "-L", "2", "-D", "r", "-n", "100", "-g", "5"], check=True)
-    assert server.end(patience_s=PATIENCE_S) == 0
-    words = [*HILPLANT, "replay", str(tmp_path / "run.hilrec")]
-    replay = subprocess.run(words, capture_output=True, text=True, check=False)
-    assert replay.returncode == 0, replay.stdout + replay.stderr
-    assert "bit for bit" in replay.stdout
