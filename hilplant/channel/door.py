@@ -239,7 +239,10 @@ async def keep(order: dict[str, Any]) -> None:
 
 def main() -> int:
     """Keep the door of the run that standard input describes."""
-    order = json.loads(sys.stdin.readline())
+    line = sys.stdin.readline()
+    if not line:  # the run came to nothing before it had a door to open
+        return 0
+    order = json.loads(line)
     stand_back(order["loop_cpu"])
     try:
         asyncio.run(keep(order))

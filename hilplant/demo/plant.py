@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 from hilplant.bench import Bench, load_bench
 from hilplant.bus.transport import open_transport
-from hilplant.channel.beside_loop import announced
+from hilplant.channel.beside_loop import announced, door_begun
 from hilplant.companion import Companion
 from hilplant.demo.sequence import DemoSequence
 from hilplant.ecu.node import EcuNode, run_ecu
@@ -71,11 +71,17 @@ def serve_demo(plan: DemoSequence, place: DemoPlace, pipe: "Connection[Message, 
 
 
 def _serve(plan: DemoSequence, place: DemoPlace, say: Callable[[Message], None]) -> Summary:
-    bench = _raining(load_bench(BENCH))
+    with door_begun(place.page is not None) as door:
+        return _beside(_raining(load_bench(BENCH)), plan, place, door, say)
+
+
+def _beside(
+    bench: Bench, plan: DemoSequence, place: DemoPlace, door: Companion | None, say: Callable[[Message], None]
+) -> Summary:
     record = None if place.recording is None else RecordTo(place.recording)
     with (
         recording(bench, record) as ring,
-        announced(bench, ring, place.page is not None) as run,
+        announced(bench, ring, door) as run,
         page_beside(bench, run, place.page) as served,
     ):
         return _run(bench, plan, ring, served, say)

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from hilplant.bench import Bench, load_bench
 from hilplant.bench.assembly import initial_state
 from hilplant.bus.mapping import NO_CHOICE
-from hilplant.channel.beside_loop import announced
+from hilplant.channel.beside_loop import announced, door_begun
 from hilplant.cli.voice import Voice
+from hilplant.companion import Companion
 from hilplant.ecu.loop_controller import Inside, seated
 from hilplant.failure import Failure
 from hilplant.operator_page.beside_run import PageOptions, page_beside
@@ -51,6 +52,20 @@ def run_daemon(  # noqa: PLR0913, PLR0917
     scenario: Played | None = None,
 ) -> Summary:
     """Serve a bench and say on the terminal how it started and how it ended."""
+    with door_begun(door) as opening:
+        return _run(name, seconds, record, channel, inside, opening, page, scenario)
+
+
+def _run(  # noqa: PLR0913, PLR0917
+    name: str,
+    seconds: float | None,
+    record: RecordTo | None,
+    channel: str | None,
+    inside: Inside | None,
+    door: Companion | None,
+    page: PageOptions | None,
+    scenario: Played | None,
+) -> Summary:
     played = None if scenario is None else load_scenario(scenario.path)
     bench = _loaded(name, channel, played)
     seat: LoopSeat | OwnLoopSeat | None = None
