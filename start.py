@@ -12,7 +12,9 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import TextIO
 from xml.etree import ElementTree
 
 HERE = Path(__file__).resolve().parent
@@ -98,7 +100,7 @@ def run_quietly(command: list[str]) -> None:
 
 
 def run_all_tests(arguments: list[str]) -> int:
-    """Run linter, type checker, the tests that need nothing, those in a browser and on vcan0; say how each went."""
+    """Run linter, type checker, the tests that need nothing, then those in a browser and on vcan0 side by side."""
     pytest = ["-m", "pytest", *arguments]
     results = {
         "ruff check": step("ruff check", ["-m", "ruff", "check", "."]),
@@ -107,24 +109,34 @@ def run_all_tests(arguments: list[str]) -> int:
         "tests": step("tests", [*pytest, *ON_ALL_CPUS, "-m", "not vcan and not browser"]),
     }
     private_vcan = ["-m", "hilplant.vcan.private_vcan", str(PYTHON)]
-    for name, command in (
-        ("tests in a browser", [*pytest, "-m", "browser", "tests/web"]),
-        ("tests on SocketCAN", [*private_vcan, *pytest, "-m", "vcan", "tests/vcan"]),
-    ):
-        with tempfile.TemporaryDirectory(prefix="hilplant-test-") as folder:
-            report = Path(folder) / "report.xml"
-            passed = step(name, [*command, f"--junitxml={report}"])
-            ran, skipped = count(report)
-        results[f"{name} ({ran} run, {skipped} skipped)"] = passed and ran > 0 and skipped == 0
+    counted = {
+        "tests in a browser": [*pytest, "-m", "browser", "tests/web"],
+        "tests on SocketCAN": [*private_vcan, *pytest, "-m", "vcan", "tests/vcan"],  # all of it on one processor
+    }
+    with ThreadPoolExecutor() as side_by_side:
+        results |= dict(side_by_side.map(run_counted, counted, counted.values()))
     print("\n" + "\n".join(f"{'passed' if good else 'FAILED'}  {name}" for name, good in results.items()))
     return 0 if all(results.values()) else 1
 
 
-def step(name: str, arguments: list[str]) -> bool:
+def run_counted(name: str, command: list[str]) -> tuple[str, bool]:
+    """Run tests of which none may be missing; what they say is shown when they have ended."""
+    with tempfile.TemporaryDirectory(prefix="hilplant-test-") as folder:
+        report, said = Path(folder) / "report.xml", Path(folder) / "said"
+        with said.open("w") as output:
+            passed = step(name, [*command, f"--junitxml={report}"], output)
+        print(said.read_text(encoding="utf-8", errors="replace"), flush=True)
+        ran, skipped = count(report)
+    return f"{name} ({ran} run, {skipped} skipped)", passed and ran > 0 and skipped == 0
+
+
+def step(name: str, arguments: list[str], output: TextIO | None = None) -> bool:
     """Run one part of the checks in the environment, and say at once how it went."""
     print(f"\n=== {name}", flush=True)
     begin = time.monotonic()
-    good = subprocess.call([str(PYTHON), *arguments], cwd=HERE, stdin=subprocess.DEVNULL) == 0
+    command = [str(PYTHON), *arguments]
+    ended = subprocess.run(command, cwd=HERE, stdin=subprocess.DEVNULL, stdout=output, stderr=output, check=False)
+    good = ended.returncode == 0
     print(f"=== {name}: {'passed' if good else 'FAILED'} after {time.monotonic() - begin:.0f} s", flush=True)
     return good
 
