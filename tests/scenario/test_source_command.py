@@ -31,12 +31,11 @@ def test_the_program_gives_what_simulate_gives(name: str, told: str, tmp_path: P
     theirs = np.array([[float(number) for number in line.split(",")] for line in lines])
     result = simulate(bench, scenario)
     assert np.ascontiguousarray(theirs[:, 1:]).tobytes() == np.ascontiguousarray(result.outputs).tobytes()
+    a_row_that_is_too_short_ends(tmp_path / "c" / "plant")
 
 
-def test_a_row_that_is_too_short_ends_the_program(tmp_path: Path) -> None:
-    CliRunner().invoke(app, ["source", "polynomial", "--out", str(tmp_path)])
-    subprocess.run(["gcc", "-std=c11", "plant.c", "bench.c", "main.c", "-o", "plant", "-lm"], cwd=tmp_path, check=True)
-    ran = subprocess.run([tmp_path / "plant"], input="1,2,3\n", capture_output=True, text=True, check=False)
+def a_row_that_is_too_short_ends(program: Path) -> None:
+    ran = subprocess.run([program], input="1,2,3\n", capture_output=True, text=True, check=False)
     assert ran.returncode == 1
     assert f"a row has 3 numbers, not {len(INPUTS)}" in ran.stderr
 
