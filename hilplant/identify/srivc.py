@@ -19,6 +19,7 @@ from scipy.optimize import least_squares
 from hilplant.arrays import Flags, Floats
 from hilplant.failure import Failure
 from hilplant.identify.breakaway import torque_part
+from hilplant.identify.coefficient_errors import FittedStretch, VoltageAnswer, covariance_of
 from hilplant.identify.filters import filtered, free_answers, held_answer, stable
 from hilplant.identify.transfer_function import TransferFunction
 
@@ -28,10 +29,6 @@ ROUNDS, TOLERANCE = 40, 1e-7
 MOST_STEPS, HIGHEST = 50, (1e5, 1e9)
 #: The filter of the first round is 1/(s + FIRST_POLE)^2 [1/s]: between the two time constants of a wiper motor.
 FIRST_POLE_1_S = 150.0
-#: Errors are taken as correlated within a block of this length, and independent between blocks [s].
-BLOCK_S = 0.25
-#: The same where steps are few: some electrical time constants [s].
-COLOUR_S = 0.01
 
 
 class Stretch(NamedTuple):
@@ -188,51 +185,16 @@ def _widened(columns: Floats, place: int, stretches: int) -> Floats:
 
 def _result(stretches: Sequence[Stretch], period_s: float, friction: bool, theta: Floats, count: int) -> TransferFit:
     """Collect the coefficients and their covariance."""
-    gradients, errors = [], []
+    fitted: list[FittedStretch] = []
     torques = _torques(stretches, period_s, friction, theta)
     for place, (stretch, torque) in enumerate(zip(stretches, torques, strict=True)):
         exogenous = _widened(_columns(stretch, period_s, torque, theta[:2]).voltage, place, len(stretches))
         modelled = exogenous @ theta[2:]
         gradient = np.hstack([-filtered(modelled, theta[:2], period_s, held=False), exogenous])
-        gradients.append(gradient[stretch.valid])
-        errors.append((stretch.current_a - modelled)[stretch.valid])
+        fitted.append(FittedStretch(gradient, stretch.current_a - modelled, stretch.voltage_v, stretch.valid))
     order = [2, 3, 0, 1, *([4] if friction else [])]
-    covariance = _covariance(gradients, errors, period_s)[np.ix_(order, order)]
+    model = VoltageAnswer(theta[2:4], theta[:2], period_s)
+    covariance = covariance_of(fitted, model)[np.ix_(order, order)]
     function = TransferFunction(*(float(theta[index]) for index in order[:4]))
-    residual_a = float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
+    residual_a = float(np.sqrt(np.mean(np.concatenate([each.errors() for each in fitted]) ** 2)))
     return TransferFit(function, float(theta[4]) if friction else 0.0, covariance, residual_a, count)
-
-
-def _covariance(gradients: Sequence[Floats], errors: Sequence[Floats], period_s: float) -> Floats:
-    """Return the covariance from sums over blocks, so that errors which hang together count; that of noise at least."""
-    information = np.sum([gradient.T @ gradient for gradient in gradients], axis=0)
-    inverse = np.linalg.pinv(information, rcond=1e-20, hermitian=True)
-    noise = inverse * float(np.mean(np.concatenate(errors) ** 2))
-    sums = []
-    for gradient, error in zip(gradients, errors, strict=True):
-        count = max(1, round(len(error) * period_s / BLOCK_S))
-        sums += [block.sum(axis=0) for block in np.array_split(gradient * error[:, None], count)]
-    scatter = np.array(sums)
-    if len(sums) <= 2 * len(information):
-        return _widened_by_colour(gradients, errors, period_s)
-    blocks = inverse @ (scatter.T @ scatter) @ inverse * len(sums) / (len(sums) - len(information))
-    widening = np.sqrt(np.maximum(1.0, np.diag(noise) / np.maximum(np.diag(blocks), 1e-300)))
-    return np.asarray(blocks * np.outer(widening, widening), np.float64)
-
-
-def _widened_by_colour(gradients: Sequence[Floats], errors: Sequence[Floats], period_s: float) -> Floats:
-    """Return the covariance from few steps: that of noise, widened in each direction where errors hang together.
-
-    Noise of the voltage comes through the motor, so that neighbouring errors are alike. In each singular direction
-    their sums over blocks of `COLOUR_S` are compared with what independent ones would give; the larger counts.
-    """
-    left, size, vectors = np.linalg.svd(np.vstack(gradients), full_matrices=False)
-    error = np.concatenate(errors)
-    variance = float(np.sum(error**2)) / max(1, len(error) - len(size))
-    block = max(1, round(COLOUR_S / period_s))
-    ends = np.cumsum([len(each) for each in errors])
-    starts = np.concatenate([np.arange(end - len(each), end, block) for end, each in zip(ends, errors, strict=True)])
-    sums = np.add.reduceat(left * error[:, np.newaxis], starts, axis=0)
-    along = np.maximum(1.0, np.sum(sums**2, axis=0) / variance)
-    widened = vectors.T * (np.sqrt(along) / np.maximum(size, 1e-10 * size[0]))
-    return np.asarray(variance * widened @ widened.T, np.float64)

@@ -8,6 +8,7 @@ import warnings
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from hilplant.failure import Failure
 from hilplant.identify.breakaway import torque_part
@@ -64,6 +65,27 @@ def test_dry_friction_does_not_bend_resistance_and_inductance(seed: int) -> None
         number = quantity(value)
         assert abs(number.n / truth - 1.0) < most
         assert abs(number.n - truth) < 3.5 * number.s
+
+
+@pytest.mark.parametrize("noise_a", [0.01, 0.1])
+def test_the_intervals_hold_what_is_true_also_where_the_voltage_is_noisy(noise_a: float) -> None:
+    """Over rigs of all kinds the squares of error over standard error add up to what chi square allows (99.9 %).
+
+    0.02 V of noise in the voltage is most of the error where the current is quiet. The sums are not too small either.
+    """
+    volts = ((8.0, 10.0, 12.0), (6.0, 9.0, 12.0, 9.0), (12.0, 0.0, 10.0, 0.0, 14.0))
+    squares = []
+    for seed in range(1, 13):
+        data = rig(seed, volts[seed % 3], (0.012 + 0.003 * seed, 0.0), noise_a, seconds=4.0)
+        try:
+            found = first_stage(data, GEAR)["slow"].by_load
+        except Failure:
+            continue
+        pairs = (quantity(found.resistance_ohm), R), (quantity(found.inductance_henry), L)
+        squares.append([((value.n - truth) / value.s) ** 2 for value, truth in pairs])
+    assert len(squares) >= 9
+    assert np.all(np.sum(squares, axis=0) < chi2.ppf(0.999, len(squares)))
+    assert np.all(np.sum(squares, axis=0) > chi2.ppf(0.001, len(squares)))
 
 
 @pytest.mark.parametrize("seed", range(32))
