@@ -15,7 +15,7 @@ from hilplant.runtime.ring import Ring
 
 @contextmanager
 def announced(bench: Bench, ring: Ring, door: Companion | None) -> Iterator[RunFile]:
-    """Say that the run is there; `door`, where there is one, is opened.
+    """Say that the run is there; `door`, where there is one, is opened, and ended with the run.
 
     Raises
     ------
@@ -32,6 +32,8 @@ def announced(bench: Bench, ring: Ring, door: Companion | None) -> Iterator[RunF
         run.write()
         yield run
     finally:
+        if door is not None:
+            door.end()
         run.remove()
 
 
