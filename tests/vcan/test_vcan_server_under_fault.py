@@ -6,7 +6,9 @@ import time
 from pathlib import Path
 from typing import Any
 
+import pytest
 from support.can_utils import (
+    PATIENCE_S,
     SLOW,
     Commander,
     last,
@@ -29,7 +31,7 @@ def test_a_client_that_stops_mid_way_leaves_the_wiper_in_the_safe_state(
 
 
 def test_the_link_goes_down_and_up_ten_times_and_the_loop_ticks_on(
-    candump: Any, shared_server: Any, vcan: str, commander: Commander
+    candump: Any, shared_server: Any, vcan: str, commander: Commander, request: pytest.FixtureRequest
 ) -> None:
     candump.wait_for(" 210#", count=2)
     for _ in range(10):
@@ -38,9 +40,11 @@ def test_the_link_goes_down_and_up_ten_times_and_the_loop_ticks_on(
         subprocess.run(["ip", "link", "set", vcan, "up"], check=True)
         time.sleep(0.6)
     assert shared_server.process.poll() is None
+    frames = request.getfixturevalue("plant_frames")  # candump ends when its link goes down
     commander.hold(SLOW)
-    assert wait_until(lambda: last(candump, "MotorStatus")["TerminalVoltage"] == 13.5), "commands are taken again"
-    assert wait_until(lambda: last(candump, "LinkFaults")["LinkDown"] == 10)
+    frames.wait_for("5E1A", patience_s=PATIENCE_S)  # 13.5 V as the terminal voltage of MotorStatus
+    assert wait_until(lambda: bool(observed(frames, "LossFaults")))
+    assert last(frames, "LossFaults")["LinkDown"] == 10
 
 
 def throttle(interface: str) -> None:
