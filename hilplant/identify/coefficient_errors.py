@@ -88,12 +88,12 @@ def _of_few_steps(fitted: Sequence[FittedStretch], model: VoltageAnswer) -> Floa
     first = np.array([0, *ends[:-1]])
     starts = np.concatenate([np.arange(begin, end, block) for begin, end in zip(first, ends, strict=True)])
     sums = np.add.reduceat(left * error[:, np.newaxis], starts, axis=0)
-    through = variance * np.eye(len(size))
+    through, noise_v = variance * np.eye(len(size)), voltage_noise(fitted)
     for each, begin, end in zip(fitted, first, ends, strict=True):
         weights = np.zeros((len(each.valid), len(size)))
         weights[each.valid] = left[begin:end]
         turned = np.array([model.turned(weight) for weight in weights.T])
-        through += voltage_noise(fitted) ** 2 * turned @ turned.T
+        through += noise_v**2 * turned @ turned.T
     wider = np.sqrt(np.maximum(1.0, np.sum(sums**2, axis=0) / np.diag(through)))
     scaled = vectors.T * (wider / np.maximum(size, 1e-10 * size[0]))
     return np.asarray(scaled @ through @ scaled.T, np.float64)

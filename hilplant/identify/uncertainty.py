@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hilplant.arrays import Floats
+from hilplant.identify.coefficient_errors import BLOCK_S
 from hilplant.identify.local_search import Solution
 from hilplant.identify.parameters import search_space
 
@@ -18,8 +19,6 @@ NORMAL_95, RISE_95 = 1.959964, 3.841459
 LEAST = 1e-6
 #: Beyond this correlation two parameters cannot be told apart.
 TOGETHER = 0.9
-#: Errors are taken as correlated within a block of this length, and independent between blocks [s].
-BLOCK_S = 0.25
 
 
 class Spread(NamedTuple):
