@@ -4,8 +4,9 @@ python tests/mutation.py --mutants 100 --seed 1 [--room models] [--near]
 
 Works on a copy of the checkout, with nothing compiled: the plant runs as Python. Each mutant is tried in a fork of a
 process that has the libraries loaded, first on the tests that name its module. The same seed and number give the same
-mutants of the same code. Exit code 1 when a mutant lives; each is printed with file, line and change, to be killed by a
-test or argued to change nothing.
+mutants of the same code. Each that lives is printed with file, line and change, to be killed by a test or argued to
+change nothing. One whose tests come to no end counts as killed only where the same tests without it take a fraction of
+that time; else it is slow, and not counted. Exit code 1 when a mutant lives or is slow.
 """
 
 import argparse
@@ -15,8 +16,10 @@ import os
 import random
 import resource
 import shutil
+import signal
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -46,8 +49,11 @@ TESTS = ("unit", "property", "oracle", "scenario")
 TOO_SLOW = ("in_c", "against_solver", "start", "soak", "daemon", "surrogates_search", "ecu_random_search", "processes")
 LIBRARIES = ("numpy", "scipy.optimize", "scipy.integrate", "numba", "can", "cantools", "pydantic", "yaml", "pyarrow",
              "typer", "e2e", "hypothesis", "pytest")  # fmt: skip
-#: CPU time of one mutant's tests, beyond which it is taken to have no end [s].
-LONGEST_S = 180
+#: CPU time, and time on the clock, of one mutant's tests, at which they are ended [s].
+LONGEST_S, LONGEST_WAIT_S = 180, 900
+#: Tests that come to no end have found the mutant if without it they take less than this share of the longest time.
+QUICK_SHARE = 0.25
+KILLED, LIVES, SLOW = "killed", "LIVES", "slow"
 _COMPARE = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq}
 _ARITHMETIC = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.BitAnd: ast.BitOr}
 
@@ -117,11 +123,19 @@ def chosen(rooms: list[str], number: int, seed: int) -> list[Mutant]:
         files = sorted(path.rglob("*.py")) if path.is_dir() else [path]
         pools[room] = [mutant for file in files for mutant in mutants_of(file)]
         chance.shuffle(pools[room])
-    drawn = []
+    drawn: list[Mutant] = []
     while len(drawn) < number and any(pools.values()):
         room = chance.choice([name for name, pool in pools.items() if pool])
         drawn.append(pools[room].pop())
     return drawn
+
+
+class Trial(NamedTuple):
+    """A run of tests: whether all passed, whether it came to an end by itself, its share of the longest time."""
+
+    passed: bool
+    ended: bool
+    share: float
 
 
 def tests_for(file: Path, near: bool = False) -> list[str]:
@@ -131,32 +145,53 @@ def tests_for(file: Path, near: bool = False) -> list[str]:
     """
     name = file.relative_to(ROOT / "hilplant").as_posix()
     words = next(words for room, words in ROOMS.items() if name.startswith(room))
-    found = {path for folder in TESTS for word in words for path in (ROOT / "tests" / folder).glob(f"test_{word}*.py")}
     module = "hilplant." + name.removesuffix(".py").replace("/", ".")
-    naming = {path for path in found if f"{module} import" in path.read_text(encoding="utf-8")}
-    useful = [path for path in found if not any(word in path.stem for word in TOO_SLOW)]
-    ordered = sorted(useful, key=lambda path: (path not in naming, TESTS.index(path.parent.name), path.stat().st_size))
+    written = {path for folder in TESTS for path in (ROOT / "tests" / folder).glob("test_*.py")}
+    useful = {path for path in written if not any(word in path.stem for word in TOO_SLOW)}
+    naming = {path for path in useful if f"{module} import" in path.read_text(encoding="utf-8")}
+    of_room = {path for path in useful if path.stem.removeprefix("test_").startswith(words)}
+    ordered = sorted(
+        naming | of_room, key=lambda path: (path not in naming, TESTS.index(path.parent.name), path.stat().st_size)
+    )
     if near:
         ordered = [path for path in ordered if path in naming or (not naming and path.parent.name == "unit")]
     return [path.relative_to(ROOT).as_posix() for path in ordered]
 
 
-def killed(mutant: Mutant | None, tests: list[str], copy: Path, turn: int) -> bool:
-    """Put a change into the copy, run the tests there, take it out again; without one, the tests have to pass."""
-    if mutant is None:
-        return _ran(tests, copy) != 0
-    changed = copy / mutant.file.relative_to(ROOT)
-    whole = changed.read_text(encoding="utf-8")
-    changed.write_text(mutant.text, encoding="utf-8")
-    os.utime(changed, (turn, turn))  # compiled bytes of an earlier turn are known as old
-    try:
-        return _ran(tests, copy) != 0
-    finally:
-        changed.write_text(whole, encoding="utf-8")
+class Copy:
+    """A copy of the checkout in which one change at a time is tried."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._clean: dict[tuple[str, ...], Trial] = {}
+        shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(".*", "__pycache__"))
+
+    def clean(self, tests: list[str]) -> Trial:
+        """Run tests without a change, once for all."""
+        if tuple(tests) not in self._clean:
+            self._clean[tuple(tests)] = _ran(tests, self._folder)
+        return self._clean[tuple(tests)]
+
+    def verdict(self, mutant: Mutant, tests: list[str], turn: int) -> str:
+        """Put a change in, run the tests, take it out again."""
+        changed = self._folder / mutant.file.relative_to(ROOT)
+        whole = changed.read_text(encoding="utf-8")
+        changed.write_text(mutant.text, encoding="utf-8")
+        os.utime(changed, (turn, turn))  # compiled bytes of an earlier turn are known as old
+        try:
+            trial = _ran(tests, self._folder)
+        finally:
+            changed.write_text(whole, encoding="utf-8")
+        if trial.passed:
+            return LIVES
+        if trial.ended:
+            return KILLED
+        clean = self.clean(tests)
+        return KILLED if clean.passed and clean.share < QUICK_SHARE else SLOW
 
 
-def _ran(tests: list[str], copy: Path) -> int:
-    """Run tests in a fork; 0 when all pass."""
+def _ran(tests: list[str], copy: Path) -> Trial:
+    """Run tests in a fork."""
     child = os.fork()
     if child == 0:
         os.setsid()
@@ -169,7 +204,15 @@ def _ran(tests: list[str], copy: Path) -> int:
             os.dup2(silence, number)
         options = ["-q", "-x", "-p", "no:cacheprovider", "-m", "not vcan and not browser", "-o", "timeout=0"]
         os._exit(int(importlib.import_module("pytest").main([*options, *tests])))
-    return os.waitpid(child, 0)[1]
+    begin_s, broken_off = time.monotonic(), False
+    while not (found := os.wait4(child, os.WNOHANG))[0]:
+        if not broken_off and time.monotonic() - begin_s > LONGEST_WAIT_S:
+            os.killpg(child, signal.SIGKILL)
+            broken_off = True
+        time.sleep(0.05)
+    _, status, usage = found
+    cpu_share = (usage.ru_utime + usage.ru_stime) / LONGEST_S
+    return Trial(status == 0, os.WIFEXITED(status), max(cpu_share, (time.monotonic() - begin_s) / LONGEST_WAIT_S))
 
 
 def main() -> int:
@@ -178,33 +221,38 @@ def main() -> int:
     parser.add_argument("--mutants", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--room", choices=list(ROOMS), help="this room alone")
-    parser.add_argument(
-        "--near", action="store_true", help="only the tests that name the changed module: quick, stricter"
-    )
+    parser.add_argument("--near", action="store_true", help="only tests that name the module: quick, stricter")
     parser.add_argument("--check", action="store_true", help="first see that all tests pass without a mutant")
     parser.add_argument("--list", action="store_true", help="list the mutants, run nothing")
     options = parser.parse_args()
     drawn = chosen([options.room] if options.room else list(ROOMS), options.mutants, options.seed)
-    alive = 0
+    if options.list:
+        print(*(f"{_place(mutant)}: {_change(mutant)}" for mutant in drawn), sep="\n")
+        return 0
     os.environ["NUMBA_DISABLE_JIT"] = "1"
-    for library in () if options.list else LIBRARIES:
+    for library in LIBRARIES:
         importlib.import_module(library)
+    verdicts: list[str] = []
     with tempfile.TemporaryDirectory(prefix="hilplant-mutants-") as folder:
-        copy = Path(folder) / "copy"
-        if not options.list:
-            shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".*", "__pycache__"))
-            for tests in {tuple(tests_for(mutant.file, options.near)) for mutant in drawn} if options.check else ():
-                if killed(None, list(tests), copy, 0):
-                    sys.exit(f"these fail without a mutant: {' '.join(tests)}")
+        copy = Copy(Path(folder) / "copy")
+        for tests in {tuple(tests_for(mutant.file, options.near)) for mutant in drawn} if options.check else ():
+            if not (trial := copy.clean(list(tests))).passed:
+                how = "fail" if trial.ended else "come to no end"
+                sys.exit(f"these {how} without a mutant: {' '.join(tests)}")
         for turn, mutant in enumerate(drawn, 1):
-            died = None if options.list else killed(mutant, tests_for(mutant.file, options.near), copy, turn)
-            alive += died is False
-            place = f"{mutant.file.relative_to(ROOT)}:{mutant.line}"
-            verdict = {None: "", True: "killed  ", False: "LIVES   "}[died]
-            print(f"{verdict}{place}: {mutant.before.splitlines()[0]}  ->  {mutant.after.splitlines()[0]}", flush=True)
-    if not options.list:
-        print(f"{len(drawn) - alive} killed, {alive} alive, of {len(drawn)}")
-    return 1 if alive else 0
+            verdicts.append(copy.verdict(mutant, tests_for(mutant.file, options.near), turn))
+            print(f"{verdicts[-1]:<7} {_place(mutant)}: {_change(mutant)}", flush=True)
+    alive, slow = verdicts.count(LIVES), verdicts.count(SLOW)
+    print(f"{verdicts.count(KILLED)} killed, {alive} alive, of {len(drawn) - slow}; {slow} slow, not counted")
+    return 1 if alive or slow else 0
+
+
+def _place(mutant: Mutant) -> str:
+    return f"{mutant.file.relative_to(ROOT)}:{mutant.line}"
+
+
+def _change(mutant: Mutant) -> str:
+    return f"{mutant.before.splitlines()[0]}  ->  {mutant.after.splitlines()[0]}"
 
 
 if __name__ == "__main__":

@@ -89,10 +89,10 @@ class Protection:
     def reserved_places(self) -> frozenset[int]:
         """Return the places (8 * byte + bit) that the header occupies, where no signal may lie."""
         profile = PROFILES[self.profile]
-        places = frozenset(range(8 * self.offset, 8 * (self.offset + profile.header_bytes)))
+        bits = 8 * profile.header_bytes
         if profile.counter_bits == 4 and self.data_id_mode != "nibble":
-            return places - frozenset(range(max(places) - 3, max(places) + 1))
-        return places
+            bits -= 4  # the nibble beside the counter is free
+        return frozenset(range(8 * self.offset, 8 * self.offset + bits))
 
 
 def _identities(values: Any) -> bytes:

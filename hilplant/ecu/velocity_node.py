@@ -134,8 +134,7 @@ def run_velocity_node(node: VelocityNode, clock: Clock, stop: Callable[[], bool]
             node.poll(clock.now_ns() - start_ns)
             deadline_ns += period_ns
             behind_ns = clock.now_ns() - deadline_ns
-            if behind_ns > 0:
-                deadline_ns += period_ns * (behind_ns // period_ns)
+            deadline_ns += period_ns * max(0, behind_ns // period_ns)
             clock.sleep_until_ns(deadline_ns)
     finally:
         node.release()

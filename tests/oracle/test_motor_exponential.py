@@ -1,6 +1,7 @@
 """The closed-form matrix exponential against scipy's, over real, equal and complex eigenvalues."""
 
 import math
+from decimal import Decimal, localcontext
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
-from hilplant.models.armature import ArmatureDrive, ArmatureMotion, glide, propagator
+from hilplant.models.armature import ArmatureDrive, ArmatureMotion, coast, glide, propagator
 
 
 def powers_of_ten(low: float, high: float) -> st.SearchStrategy[float]:
@@ -79,3 +80,17 @@ def test_the_turned_angle_is_the_integral_of_the_speed(
     lost = 1e-14 * (final + abs(speed)) * (time + drive.resistance * drive.inertia / strength)
     turned = 0.5 * time * float(weights @ speeds)
     assert abs(glide(start, drive, torque, time).turned - turned) <= 1e-8 * time * np.abs(speeds).max() + lost
+
+
+@pytest.mark.parametrize("x", [0.0, 1e-12, 1e-6, 3e-4, 9.99e-4, 1.001e-3, 0.1, 3.0])
+def test_an_open_armature_coasts_as_the_exponential_of_fifty_digits(x: float) -> None:
+    """Damping from none to strong, on both sides of where the series is left."""
+    time, inertia, speed, torque = 1e-3, 2e-5, 300.0, 0.01
+    drive = ArmatureDrive(12.0, 1.0, 1e-3, 0.0, inertia, x * inertia / time, 0.0)
+    with localcontext(prec=50):
+        exact = Decimal(drive.damping) * Decimal(time) / Decimal(inertia)
+        first = (1 - (-exact).exp()) / exact if exact else Decimal(1)
+        second = (1 - first) / exact if exact else Decimal("0.5")
+        change = -(Decimal(drive.damping) * Decimal(speed) + Decimal(torque)) / Decimal(inertia) * Decimal(time)
+        wanted = float(Decimal(speed) + change * first), float(Decimal(time) * (Decimal(speed) + change * second))
+    assert coast(ArmatureMotion(5.0, speed, 0.0), drive, torque, time) == pytest.approx((0.0, *wanted), rel=1e-13)

@@ -1,6 +1,7 @@
 """`hilplant run --controller`: a velocity controller in every tick of the daemon, on the shipped in-memory bench."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -45,6 +46,16 @@ def test_it_needs_no_frames_and_does_not_mind_those_of_a_relay_ecu():
     second = speeds(loop, gear_ratio, range(1000, 3000))
     assert first[100:] == pytest.approx(3.14, abs=0.1)
     assert second[100:] == pytest.approx(2.0, abs=0.1)
+
+
+def test_nobody_waits_for_the_frames_that_would_command_relays_and_supply():
+    bench = load_bench("default")
+    waited_for = replace(bench, receive=tuple(replace(message, timeout_ns=7) for message in bench.receive))
+    inside, _ = seated(waited_for, Inside("cascade", "3"))
+    commands = {"RelayCommand", "SupplyCommand"}
+    assert {message.name for message in inside.receive} > commands
+    for message in inside.receive:
+        assert message.timeout_ns == (0 if message.name in commands else 7)
 
 
 def test_a_controller_that_was_put_aside_begins_anew():

@@ -1,6 +1,7 @@
 """Controllers from a file and from a user's module: they drive, and one that takes too long is stopped and said."""
 
 import re
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -195,6 +196,16 @@ def test_the_daemon_opens_the_relays_says_why_and_ends_with_1(module: Any, tmp_p
 def test_a_name_that_means_nothing_is_told_in_one_line(name: str, told: str):
     with pytest.raises(Failure, match=told):
         seat_on_bus(ControllerChoice(name, lambda _: 1.0), DRIVEN)
+
+
+def test_a_module_of_the_working_directory_is_found_wherever_else_python_looks(
+    module: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    name = module("in_my_own_folder", "def make(motor, period_s):\n    return lambda reference, measured: (7.0, False)\n")
+    elsewhere = [place for place in sys.path if place not in ("", str(tmp_path))]
+    monkeypatch.setattr(sys, "path", list(elsewhere))
+    assert seat_on_bus(ControllerChoice(name, lambda _: 1.0), DRIVEN).decide(0.0, SEEN).voltage_v == 7.0
+    assert sys.path == elsewhere
 
 
 def test_a_maker_that_returns_no_function_is_told():

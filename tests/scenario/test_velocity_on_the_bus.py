@@ -23,7 +23,7 @@ from hilplant.ecu.velocity_node import VelocityNode, VelocityReport, run_velocit
 from hilplant.failure import Failure
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.server import build_loop
-from hilplant.signals import INPUT_INDEX
+from hilplant.signals import ECU_RX_INDEX, INPUT_INDEX
 from hilplant.thesis.control_test import run_drive, thesis_drive
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
@@ -118,6 +118,9 @@ def test_silence_of_the_plant_releases_the_relays_and_its_return_starts_anew():
     drive.run(1.0)
     assert drive.speeds[-1] == pytest.approx(0.0, abs=1e-6)
     drive.cable.cut = False
+    drive.node.poll(drive.cable.now * MILLISECOND_NS)
+    relays = [frame for _, frame in drive.cable.plant.under_way if frame.identifier == 0x120]
+    assert relays and all(frame.data[0] == 0 for frame in relays), "both relays off while the plant is not heard"
     speeds = drive.run(2.0)
     assert speeds[-200:] == pytest.approx(math.pi, abs=0.4)
     assert speeds.max() < math.pi + 1.0
@@ -138,9 +141,15 @@ def test_the_cascade_without_a_speed_sensor_is_refused_at_the_period_of_the_bus(
 def test_a_bench_that_does_not_tell_the_speed_is_refused():
     side = BENCH.ecu_side()
     seat = Seat(controller_named("pid", BENCH.parameters.motor, 0.01), without_network(), lambda _: 3.0)
+    currents = {ECU_RX_INDEX["current_a"], ECU_RX_INDEX["measured_current_a"]}
     deaf = replace(side, receive=tuple(each for each in side.receive if each.name != "MotorStatus"))
     with pytest.raises(Failure, match="do not carry crank_speed_rad_s, current_a; a controller needs them"):
         VelocityNode(deaf, Cable(0, 0.0).controller, seat)
+    speed_only = tuple(
+        replace(each, targets=tuple(name for name in each.targets if name not in currents)) for each in side.receive
+    )
+    with pytest.raises(Failure, match="do not carry current_a; a controller needs them"):
+        VelocityNode(replace(side, receive=speed_only), Cable(0, 0.0).controller, seat)
     with pytest.raises(Failure, match="no message of the bench sends crank_speed_rad_s"):
         status_period_ns([message for message in BENCH.send if message.name != "MotorStatus"])
 
@@ -153,6 +162,21 @@ def test_the_node_polls_at_its_period_and_releases_the_relays_at_the_end():
     assert np.diff(times) == pytest.approx(PERIOD_NS / SECOND_NS)
     last = [frame for _, frame in drive.cable.plant.under_way if frame.identifier == 0x120][-1]
     assert last.data[:1] == b"\x00"
+
+
+@pytest.mark.parametrize(("late_ms", "next_ms"), [(9, 50), (10, 50), (11, 51), (35, 75), (40, 80)])
+def test_a_node_that_was_held_up_leaves_whole_periods_out_and_keeps_its_grid(late_ms, next_ms):
+    node, clock, times_ms = Drive("pid").node, VirtualClock(), []
+
+    def report(told: VelocityReport) -> None:
+        times_ms.append(round(told.time_s * 1000))
+        if len(times_ms) == 5:
+            clock.sleep_until_ns(clock.now_ns() + late_ms * MILLISECOND_NS)
+
+    node.report = report
+    run_velocity_node(node, clock, lambda: len(times_ms) == 8, PERIOD_NS)
+    grid = next_ms // PERIOD_MS * PERIOD_MS
+    assert times_ms == [0, 10, 20, 30, 40, next_ms, grid + PERIOD_MS, grid + 2 * PERIOD_MS]
 
 
 @pytest.mark.parametrize("name", ["pid", "hebb_fuzzy", "cascade"])

@@ -175,6 +175,28 @@ def test_a_value_at_the_end_of_its_range_survives_the_rounding_of_the_bus() -> N
     assert lowest <= value <= highest
 
 
+@pytest.mark.parametrize(
+    ("factor", "is_float", "mapping", "limits"),
+    [
+        (0.5, False, SignalMapping("Voltage", "supply_v"), (9.75, 30.25)),
+        (-0.5, False, SignalMapping("Voltage", "supply_v"), (9.75, 30.25)),
+        (0.5, False, SignalMapping("Voltage", "supply_v", scale=0.1), (1.0 - 0.025, 3.0 + 0.025)),
+        (0.5, False, SignalMapping("Voltage", "supply_v", scale=-0.1, offset=5.0), (2.0 - 0.025, 4.0 + 0.025)),
+        (0.5, False, SignalMapping("Voltage", "supply_v", scale=4.0), (40.0 - 1.0, 100.0 + 1.0)),
+        (0.5, True, SignalMapping("Voltage", "supply_v"), (10.0, 30.0)),
+        (0.5, True, SignalMapping("Voltage", "supply_v", scale=0.1), (1.0, 3.0)),
+    ],
+)
+def test_limits_are_the_narrower_range_and_half_a_raw_step_wider(
+    factor: float, is_float: bool, mapping: SignalMapping, limits: tuple[float, float]
+) -> None:
+    """The database permits 10 to 30, the plant -16 to 100 V; a float is not rounded on its way."""
+    conversion = BaseConversion.factory(factor, 0, None, is_float)
+    bits = 32 if is_float else 16
+    voltage = DatabaseSignal("Voltage", 0, bits, is_signed=True, conversion=conversion, minimum=10, maximum=30)
+    assert received_message(Message(1, "One", 8, [voltage]), [mapping], INPUTS).limits == (pytest.approx(limits),)
+
+
 def test_timing_comes_from_the_database_unless_it_is_given() -> None:
     message = WIPER.get_message_by_name("ParkSwitch")
     mapping = [SignalMapping("ParkContact", "park_contact")]

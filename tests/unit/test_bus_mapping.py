@@ -122,6 +122,27 @@ def test_a_signal_under_the_protections_header_is_refused_and_beside_it_is_not()
 
 
 @pytest.mark.parametrize(
+    ("places", "offset", "words"),
+    [
+        ([(0, 12), (8, 8)], None, r"M\.B: it shares bits with A"),
+        ([(0, 12), (60, 8)], None, r"M\.B: it does not fit in the frame's 8 bytes"),
+        ([(40, 8), (20, 8)], 0, r"M\.B: it lies where protection profile 5"),
+        ([(0, 8), (24, 8)], 3, r"M\.B: it lies where protection profile 5"),
+    ],
+)
+def test_a_signal_that_cannot_be_sent_beside_what_the_frame_carries_is_refused(
+    places: list[tuple[int, int]], offset: int | None, words: str
+) -> None:
+    signals = [DatabaseSignal(name, start, length) for name, (start, length) in zip("AB", places, strict=True)]
+    message = Message(1, "M", 8, signals, strict=False)
+    protection = None if offset is None else Protection(5, 8, data_id=1, offset=offset)
+    maps = [Map("A", "current_a"), Map("B", "terminal_v")]
+    with pytest.raises(MappingError, match=words):
+        sent_message(message, maps, PUBLISHED, Timing(0), protection)
+    assert sent_message(message, maps[:1], PUBLISHED, Timing(0), protection).protection == protection
+
+
+@pytest.mark.parametrize(
     ("length", "is_fd", "words"), [(12, False, "12 bytes need an FD frame"), (13, True, "no FD frame has 13 bytes")]
 )
 def test_a_length_that_no_frame_has_is_refused(length: int, is_fd: bool, words: str) -> None:

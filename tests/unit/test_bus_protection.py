@@ -121,6 +121,19 @@ def test_however_many_frames_are_lost_one_more_is_refused(protection: Protection
     assert verdicts == [FrameCheck.OK, FrameCheck.WRONG_COUNTER, *[FrameCheck.OK] * (len(heard) - 2)]
 
 
+@pytest.mark.parametrize("profile", [1, 2, 11])
+def test_the_nibble_beside_a_short_counter_is_the_signals_own(profile: int) -> None:
+    """It changes with each frame, is sent as it was, and the counter is read without it."""
+    identity: dict[str, Any] = {"data_id_list": bytes(16)} if profile == 2 else {"data_id": 0x123}
+    protection = Protection(profile, 8, **identity)
+    protector, checker = Protector(protection), Checker(protection)
+    for nibble in (0, 1, 15, 1, 2, 4, 8, 0, 3, 14, 1, 0, 5, 10, 0, 1, 1, 0, 15):
+        frame = bytearray([0, nibble << 4, *range(6)])
+        protector.protect(frame)
+        assert checker.check(bytes(frame)) is FrameCheck.OK
+        assert frame[1] >> 4 == nibble
+
+
 def test_a_wrong_checksum_moves_no_counter() -> None:
     protection = Protection(5, 8, data_id=1)
     first, second = frames(protection, 2)

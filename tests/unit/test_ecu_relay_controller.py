@@ -98,6 +98,34 @@ def test_off_while_the_wiper_passes_park_makes_one_more_turn(bench):
     assert bench.play(0.0, OFF, True) == RELAYS_OFF
 
 
+@pytest.mark.parametrize(("rests_open", "begins", "arrivals"), [(True, False, 2), (True, True, 1), (False, True, 1)])
+def test_the_window_that_a_wiper_passes_as_it_leaves_is_not_taken_for_its_return(rests_open, begins, arrivals):
+    """One that rests outside the window meets it twice in its first turn; one that starts inside has left it."""
+    seat = Bench(RelaySettings(rests_open=rests_open))
+    seat.play(1.0, OFF, begins)
+    seat.play(0.05, SLOW, begins)
+    for arrival in range(1, arrivals + 1):
+        assert seat.play(0.3, OFF, False) == DRIVE
+        seat.play(0.0, OFF, True)
+        assert seat.relays == (DRIVE if arrival < arrivals else RELAYS_OFF)
+
+
+@pytest.mark.parametrize("edges", [3, 6, 10])
+@pytest.mark.parametrize("window_s", [0.5, 1.0, 2.0])
+def test_as_many_edges_within_a_window_are_bounces_and_one_less_in_each_is_wiping(edges, window_s):
+    for number in (edges - 1, edges):
+        seat = Bench(RelaySettings(bounce_edges=edges, bounce_window_s=window_s))
+        seat.play(POLL_S, SLOW, True)
+        contact = True
+        seat.until(lambda: (seat.now_s + POLL_S) % window_s == 0.0, SLOW, contact)  # noqa: B023
+        for _ in range(2):
+            for _ in range(number):
+                contact = not contact
+                seat.play(0.0, SLOW, contact)
+            seat.play(window_s - number * POLL_S, SLOW, contact)
+        assert (seat.fault is Fault.PARK_BOUNCES) == (number == edges)
+
+
 def test_a_contact_that_bounces_as_it_opens_is_not_taken_for_park(bench):
     bench.play(0.05, SLOW, True)
     bench.play(0.0, OFF, True)
