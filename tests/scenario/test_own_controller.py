@@ -201,7 +201,9 @@ def test_a_name_that_means_nothing_is_told_in_one_line(name: str, told: str):
 def test_a_module_of_the_working_directory_is_found_wherever_else_python_looks(
     module: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    name = module("in_my_own_folder", "def make(motor, period_s):\n    return lambda reference, measured: (7.0, False)\n")
+    name = module(
+        "in_my_own_folder", "def make(motor, period_s):\n    return lambda reference, measured: (7.0, False)\n"
+    )
     elsewhere = [place for place in sys.path if place not in ("", str(tmp_path))]
     monkeypatch.setattr(sys, "path", list(elsewhere))
     assert seat_on_bus(ControllerChoice(name, lambda _: 1.0), DRIVEN).decide(0.0, SEEN).voltage_v == 7.0
