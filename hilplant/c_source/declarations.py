@@ -42,14 +42,13 @@ def met(name: str, kind: Type, scope: Scope) -> Type:
 
 def before(statement: ast.stmt, body: list[ast.stmt], scope: Scope) -> Iterator[str]:
     """Return the variables that are declared in front of a statement, without a value yet."""
-    if body is not scope.source.tree.body:
+    source = scope.source
+    if body is not source.tree.body:
         return
-    for name in scope.source.assigned:
-        if name == "_" or name in scope.source.arguments or _is_counter(name, scope):
+    for name in source.assigned:
+        if name == "_" or name in source.arguments or name in source.counters:
             continue
-        earlier = body[: body.index(statement)]
-        first = name in names_in(statement) and not any(name in names_in(other) for other in earlier)
-        if first and declared_at(name, scope) is None:
+        if source.first_use[name] is statement and declared_at(name, scope) is None:
             yield name
 
 
@@ -90,13 +89,6 @@ def by_address(name: str, kind: Type, scope: Scope) -> bool:
 
 def _targets(statement: ast.Assign | ast.AnnAssign) -> list[ast.expr]:
     return statement.targets if isinstance(statement, ast.Assign) else [statement.target]
-
-
-def _is_counter(name: str, scope: Scope) -> bool:
-    return any(
-        isinstance(node, ast.For) and isinstance(node.target, ast.Name) and node.target.id == name
-        for node in ast.walk(scope.source.tree)
-    )
 
 
 def _innermost(body: list[ast.stmt], name: str) -> tuple[list[ast.stmt], ast.stmt]:

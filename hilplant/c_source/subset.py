@@ -63,6 +63,21 @@ class FunctionSource:
         """How often each name is assigned in the function."""
         return assigned_in(self.tree)
 
+    @cached_property
+    def first_use(self) -> dict[str, ast.stmt]:
+        """The first statement of the function's own block in which each name stands."""
+        found: dict[str, ast.stmt] = {}
+        for statement in self.tree.body:
+            for name in names_in(statement):
+                found.setdefault(name, statement)
+        return found
+
+    @cached_property
+    def counters(self) -> set[str]:
+        """Names that count a loop."""
+        loops = (node for node in ast.walk(self.tree) if isinstance(node, ast.For))
+        return {loop.target.id for loop in loops if isinstance(loop.target, ast.Name)}
+
     @property
     def summary(self) -> str:
         """The first line of the docstring."""

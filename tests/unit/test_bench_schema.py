@@ -1,12 +1,12 @@
 """The JSON Schemas: fresh, followed by every shipped file, and strict enough to refuse mistakes without hilplant."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
+import check_jsonschema
 import pytest
+from click.testing import CliRunner, Result
 
 from hilplant.resources import shipped
 from hilplant.signals import INPUTS, PUBLISHED
@@ -17,9 +17,8 @@ FOLDERS = {kind: shipped("config", f"{kind}{'es' if kind == 'bench' else 's'}") 
 TWENTY = Path(__file__).parents[1] / "data" / "benches" / "twenty_mistakes"
 
 
-def validated(kind: str, *files: Path) -> subprocess.CompletedProcess[str]:
-    program = [sys.executable, "-m", "check_jsonschema", "--schemafile", str(SCHEMAS / file_name(kind))]
-    return subprocess.run([*program, *map(str, files)], capture_output=True, text=True, check=False)
+def validated(kind: str, *files: Path) -> Result:
+    return CliRunner().invoke(check_jsonschema.main, ["--schemafile", str(SCHEMAS / file_name(kind)), *map(str, files)])
 
 
 def keys_of(schema: Any) -> dict[str, Any]:
@@ -46,15 +45,15 @@ def test_every_shipped_file_names_its_schema_and_follows_it(kind: str, folder: P
         first = file.read_text(encoding="utf-8").splitlines()[0]
         assert first == f"# yaml-language-server: $schema=../schemas/{file_name(kind)}", file
     done = validated(kind, *files)
-    assert done.returncode == 0, done.stdout
+    assert done.exit_code == 0, done.output
 
 
 def test_the_bench_with_twenty_mistakes_is_refused_and_so_is_its_motor() -> None:
     done = validated("bench", TWENTY / "bench.yaml")
-    assert done.returncode == 1
+    assert done.exit_code == 1
     for words in ("window_deg", "crank_angle_rad", "soaked", "profile", "pause"):
-        assert words in done.stdout
-    assert validated("motor", TWENTY / "motor.yaml").returncode == 1
+        assert words in done.output
+    assert validated("motor", TWENTY / "motor.yaml").exit_code == 1
 
 
 @pytest.mark.parametrize(
@@ -73,7 +72,7 @@ def test_the_bench_with_twenty_mistakes_is_refused_and_so_is_its_motor() -> None
 )
 def test_a_bench_that_extends_another_needs_only_what_differs(tmp_path: Path, text: str, right: bool) -> None:
     (tmp_path / "bench.yaml").write_text(text)
-    assert (validated("bench", tmp_path / "bench.yaml").returncode == 0) == right
+    assert validated("bench", tmp_path / "bench.yaml").exit_code == (0 if right else 1)
 
 
 @pytest.mark.parametrize("kind", KINDS)

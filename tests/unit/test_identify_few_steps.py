@@ -4,12 +4,15 @@ The rigs are simulated here, apart from the plant: exact current between fine st
 rest.
 """
 
+import math
 import warnings
 
+import numba
 import numpy as np
 import pytest
 from scipy.stats import chi2
 
+from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.identify.breakaway import torque_part
 from hilplant.identify.first_stage import first_stage
@@ -22,22 +25,17 @@ R, L, K, GEAR = 1.0, 2.0e-3, 0.04, 63.0
 FINE = 8
 
 
-def rig(seed: int, volts: tuple[float, ...], torques: tuple[float, float], noise: float, seconds: float) -> Measurement:
-    """Simulate a motor that is stepped through `volts`; its load, beside dry friction, swings with the crank."""
+@numba.njit
+def driven(voltage: Floats, torques: tuple[float, float], angle: float) -> Floats:
+    """Return current [A] and park contact at each millisecond of the voltage, from rest at an angle of the crank."""
     coulomb, load = torques
-    rng = np.random.default_rng(seed)
-    count, step_s, inertia = round(1e3 * seconds), 1e-3 / FINE, 2e-5
-    edges = np.linspace(0.5, seconds, len(volts) + 1) * 1e3
-    voltage = np.zeros(count)
-    for volt, begin, end in zip(volts, edges[:-1].astype(int), edges[1:].astype(int), strict=True):
-        voltage[begin:end] = volt
-    decay = float(np.exp(-step_s * R / L))
+    step_s, inertia = 1e-3 / FINE, 2e-5
+    decay = math.exp(-step_s * R / L)
     current = speed = 0.0
-    angle = float(rng.uniform(0.0, 6.28))
-    rows = np.zeros((count, 2))
-    for tick, volt in enumerate(voltage.tolist()):
-        rows[tick] = current, angle % (2.0 * np.pi) < 0.12
-        torque = coulomb + load * (1.0 + np.sin(2.0 * angle))
+    rows = np.zeros((len(voltage), 2))
+    for tick, volt in enumerate(voltage):
+        rows[tick, 0], rows[tick, 1] = current, angle % (2.0 * math.pi) < 0.12
+        torque = coulomb + load * (1.0 + math.sin(2.0 * angle))
         for _ in range(FINE):
             settled = (volt - K * speed) / R
             current = settled + (current - settled) * decay
@@ -45,6 +43,17 @@ def rig(seed: int, volts: tuple[float, ...], torques: tuple[float, float], noise
             held = speed <= 0.0 and drive < torque
             speed = 0.0 if held else max(0.0, speed + step_s * (drive - torque) / inertia)
             angle += step_s * speed / GEAR
+    return rows
+
+
+def rig(seed: int, volts: tuple[float, ...], torques: tuple[float, float], noise: float, seconds: float) -> Measurement:
+    """Simulate a motor that is stepped through `volts`; its load, beside dry friction, swings with the crank."""
+    rng, count = np.random.default_rng(seed), round(1e3 * seconds)
+    edges = np.linspace(0.5, seconds, len(volts) + 1) * 1e3
+    voltage = np.zeros(count)
+    for volt, begin, end in zip(volts, edges[:-1].astype(int), edges[1:].astype(int), strict=True):
+        voltage[begin:end] = volt
+    rows = driven(voltage, torques, float(rng.uniform(0.0, 6.28)))
     time_s = np.arange(count) * 1e-3
     measured = {
         "voltage": np.round(voltage + 0.02 * rng.standard_normal(count), 2),
