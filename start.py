@@ -22,8 +22,8 @@ VENV = HERE / ".venv"
 STAMP = VENV / "hilplant-installed"
 PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 OLDEST = (3, 11)
-#: A file of tests stays in one process: its tests share what they have compiled.
-ON_ALL_CPUS = ("-n", "auto", "--dist", "loadfile")
+#: A file of tests stays in one process, which its fixtures serve; the files in the order of tests/conftest.py.
+ON_ALL_CPUS = ("-n", "auto", "--dist", "loadfile", "--no-loadscope-reorder")
 
 
 def main(arguments: list[str]) -> int:
@@ -101,13 +101,16 @@ def run_quietly(command: list[str]) -> None:
 
 def run_all_tests(arguments: list[str]) -> int:
     """Run linter, type checker, the tests that need nothing, then those in a browser and on vcan0 side by side."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the tests have the processors, each process of them one
     pytest = ["-m", "pytest", *arguments]
     results = {
         "ruff check": step("ruff check", ["-m", "ruff", "check", "."]),
         "ruff format": step("ruff format", ["-m", "ruff", "format", "--check", "."]),
-        "mypy": step("mypy", ["-m", "mypy", "hilplant", "start.py"]),
-        "tests": step("tests", [*pytest, *ON_ALL_CPUS, "-m", "not vcan and not browser"]),
     }
+    before = {"mypy": ["-m", "mypy", "hilplant", "start.py"], "compiled step": ["tests/compile_first.py"]}
+    with ThreadPoolExecutor() as side_by_side:
+        results |= zip(before, side_by_side.map(step, before, before.values()), strict=True)
+    results["tests"] = step("tests", [*pytest, *ON_ALL_CPUS, "-m", "not vcan and not browser"])
     private_vcan = ["-m", "hilplant.vcan.private_vcan", str(PYTHON)]
     counted = {
         "tests in a browser": [*pytest, "-m", "browser", "tests/web"],

@@ -5,8 +5,20 @@ To search anew: HILPLANT_SEARCH=1 python -m pytest tests/property
 
 import os
 
+import pytest
 from hypothesis import settings
 
 settings.register_profile("same examples", derandomize=True)
 settings.register_profile("new examples", derandomize=False)
 settings.load_profile("new examples" if os.environ.get("HILPLANT_SEARCH") else "same examples")
+
+#: The files that take longest, the longest first. One that starts last would be waited for while processors idle.
+LONGEST = (
+    "test_on_an_interface", "test_identify_twin", "test_plant_in_c", "test_pytest_plugin", "test_benchmarks_run",
+    "test_source_command", "test_one_declaration", "test_plant_reduced", "test_networks_on_the_bus",
+    "test_surrogates_on_the_bus", "test_demo_run", "test_plant_parked", "test_shipped_suite", "test_networks_in_c",
+)  # fmt: skip
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    items.sort(key=lambda item: LONGEST.index(item.path.stem) if item.path.stem in LONGEST else len(LONGEST))

@@ -86,8 +86,10 @@ def twin(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def commanded(twin: Path, out: Path) -> dict[str, Any]:
-    """Return what the command finds in the same recordings, from the bench that the page has opened."""
+@pytest.fixture(scope="module")
+def expected(twin: Path) -> dict[str, Any]:
+    """What the command finds in the same recordings, from the bench that the page has opened."""
+    out = twin / "commanded"
     bench = open_model("default").written_to(out / "bench")
     data = f"{twin / 'fast_wet.csv'}@wet", f"{twin / 'slow_dry.csv'}@dry"
     return figures(identify_files(Request(data, str(bench), out / "car.yaml", date="2026-01-01", **SETTINGS)).found)
@@ -109,13 +111,12 @@ def found_on(page: Page) -> dict[str, float]:
 
 
 def test_identification_on_the_page_is_the_commands_and_is_accepted_into_the_panels(
-    page: Page, tmp_path: Path, twin: Path
+    page: Page, tmp_path: Path, twin: Path, expected: dict[str, Any]
 ) -> None:
     with modelling(page, tmp_path / "work", "default") as session:
         before = dict(session.model.texts)
         start(page, twin)
         found = found_on(page)
-        expected = commanded(twin, tmp_path)
         assert found == {name: pytest.approx(expected[name], rel=1e-12) for name in found}
         assert found["slow_resistance_ohm"] == pytest.approx(1.2368, rel=0.03)  # the twin's own
         page.click("#accept")
@@ -134,7 +135,9 @@ def test_identification_on_the_page_is_the_commands_and_is_accepted_into_the_pan
         assert dict(session.model.texts) == before
 
 
-def test_a_stopped_identification_goes_on_to_the_same_result(page: Page, tmp_path: Path, twin: Path) -> None:
+def test_a_stopped_identification_goes_on_to_the_same_result(
+    page: Page, tmp_path: Path, twin: Path, expected: dict[str, Any]
+) -> None:
     with modelling(page, tmp_path / "work", "default") as session:
         start(page, twin)
         job = page.locator("div[data-state]")
@@ -147,7 +150,6 @@ def test_a_stopped_identification_goes_on_to_the_same_result(page: Page, tmp_pat
             known = len(seen["lengths"])
         page.click("#resume")
         found = found_on(page)
-        expected = commanded(twin, tmp_path)
         assert found == {name: pytest.approx(expected[name], rel=1e-12) for name in found}
         assert known > 0
         answer = json.loads(json.dumps(session.jobs.state["answer"]))
