@@ -61,7 +61,7 @@ def main() -> None:
         without = [p99_us(ring, 10.0)]
         with shown(browser, plant) as page:
             page.locator("#stalk-slow").click()
-            for rate_hz in (30, 60):
+            for rate_hz in (page.evaluate("hilplant.session.rateHz"), 60):
                 print(drawn(page, seconds, rate_hz), flush=True)
         without.append(p99_us(ring, 10.0))
         with contextlib.ExitStack() as pages:

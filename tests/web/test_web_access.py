@@ -3,6 +3,7 @@
 import asyncio
 import http.client
 import json
+import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -211,3 +212,23 @@ def test_an_address_is_read_or_refused_in_one_line() -> None:
     for wrong in ("here", "host:", "1:70000"):
         with pytest.raises(Failure, match="is no address for a page"):
             Address.parse(wrong)
+
+
+def test_a_row_is_sent_at_once() -> None:
+    """Nagle's algorithm is off: beside a delayed acknowledgement it keeps every second row back for 40 ms."""
+
+    async def delayed() -> list[int]:
+        found: list[int] = []
+
+        def came(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+            found.append(writer.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY))
+            writer.close()
+
+        listening = Address("127.0.0.1", 0).listen()
+        async with await asyncio.start_server(came, sock=listening):
+            reader, writer = await asyncio.open_connection(*listening.getsockname())
+            await reader.read()
+            writer.close()
+        return found
+
+    assert asyncio.run(delayed()) == [1]

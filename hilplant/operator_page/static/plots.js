@@ -20,7 +20,7 @@ export class Plots {
     this.cursors = { A: null, B: null };
     this.cursorsOn = false;
     this.frozen = null;
-    this.fresh = false;
+    this.asked = false;
     this.drawnAt = 0;
     this.cost = 0;
     this.stats = { draws: 0, latencyMs: [] };
@@ -35,11 +35,11 @@ export class Plots {
         element("label", {}, "window", this.window), this.pauseButton, this.cursorButton,
         element("button", { id: "add-chart", title: "another chart", onclick: () => this.add([]) }, "+ chart"))),
       this.body);
-    session.addEventListener("sample", () => { this.fresh = true; });
+    session.addEventListener("sample", () => this.refresh());
+    session.addEventListener("row", () => this.charts.forEach((chart) => chart.tell()));
     session.addEventListener("wrong", (event) => say(this.note, event.detail));
     addEventListener("themechange", () => this.charts.forEach((chart) => chart.build()));
     this.set({ charts: FIRST, windowS: 10 });
-    requestAnimationFrame(() => this.frame());
   }
 
   signal(name) {
@@ -124,7 +124,7 @@ export class Plots {
     } catch (error) {
       say(this.note, error.message);
     }
-    this.fresh = true;
+    this.refresh();
   }
 
   zoom(from, to) {
@@ -155,12 +155,12 @@ export class Plots {
     this.cursorButton.setAttribute("aria-pressed", String(this.cursorsOn));
     if (!this.cursorsOn) this.cursors = { A: null, B: null };
     else if (!this.frozen) this.togglePause();
-    this.fresh = true;
+    this.refresh();
   }
 
   setCursor(name, at) {
     this.cursors[name] = at;
-    this.fresh = true;
+    this.refresh();
   }
 
   range() {
@@ -171,23 +171,31 @@ export class Plots {
     return [now - this.session.windowS, now];
   }
 
+  // A frame is asked for only when there is something new: each costs the browser a look at the whole page.
+  refresh() {
+    if (this.asked) return;
+    this.asked = true;
+    requestAnimationFrame(() => this.frame());
+  }
+
   frame() {
     // A machine that is slow at drawing keeps half of its time for everything else.
     const began = performance.now();
-    if (this.fresh && !document.hidden && began - this.drawnAt >= this.cost) {
-      this.fresh = false;
-      this.draw();
-      this.drawnAt = performance.now();
-      this.cost = this.drawnAt - began;
+    this.asked = false;
+    if (began - this.drawnAt < this.cost) {
+      this.refresh();
+      return;
     }
-    requestAnimationFrame(() => this.frame());
+    this.draw();
+    this.drawnAt = performance.now();
+    this.cost = this.drawnAt - began;
   }
 
   draw() {
     const range = this.range();
     for (const chart of this.charts) {
       chart.draw(this.dataOf(chart.names), range);
-      chart.tell();
+      if (this.frozen) chart.tell();
     }
     const { A, B } = this.cursors;
     if (A !== null && B !== null) say(this.note, `A ${A.toFixed(4)} s  B ${B.toFixed(4)} s  Δt ${(B - A).toFixed(4)} s`);

@@ -5,7 +5,8 @@ import { Samples } from "./samples.js";
 const STALE_MS = 500;
 // Texts and controls are written anew no more often than they can be read.
 const ROW_MS = 90;
-const KEPT_POINTS = 2400;
+// The least and greatest of each stretch: about a pixel of a chart.
+const KEPT_POINTS = 1200;
 
 export class Session extends EventTarget {
   // Events: sample (a block has come), row (the same, ten times a second), state, events, stale (detail: words, "" when alive again), chosen.
@@ -15,7 +16,7 @@ export class Session extends EventTarget {
     this.samples = new Samples(description);
     this.state = { lead: null, asking: [], pages: 0, waveform: {} };
     this.page = 0;
-    this.rateHz = 30;
+    this.rateHz = 32; // some come two to a frame: at least 29 are drawn
     this.windowS = 10;
     this.chosen = [];
     this.words = "connecting";

@@ -18,8 +18,7 @@ export function wiper(session) {
   let shown = -1;
 
   function draw() {
-    const { samples } = session;
-    const angle = samples.value("out.crank_angle_rad");
+    const angle = session.samples.value("out.crank_angle_rad");
     const at = Math.round((((angle / (2 * Math.PI)) % 1) + 1) % 1 * (shape.pictures - 1));
     if (at !== shown) {
       shown = at;
@@ -30,6 +29,11 @@ export function wiper(session) {
         line.node.setAttribute("points", text);
       }
     }
+  }
+
+  function tell() {
+    const { samples } = session;
+    const angle = samples.value("out.crank_angle_rad");
     const wet = samples.value("in.screen");
     const state = STATES.find(([limit]) => wet < limit)[1];
     glass.style.fill = `color-mix(in srgb, var(--wet) ${Math.round(wet * 100)}%, var(--dry))`;
@@ -37,6 +41,7 @@ export function wiper(session) {
   }
 
   session.addEventListener("sample", draw);
+  session.addEventListener("row", tell);
   return element("section", { class: "panel", "aria-label": "Wiper" }, element("h2", {}, "Wiper", told), picture);
 }
 
