@@ -1,6 +1,5 @@
 """The C compiler, where there is one."""
 
-import ctypes
 import shutil
 import subprocess
 from collections.abc import Sequence
@@ -29,10 +28,10 @@ def compile_program(sources: Sequence[Path], program: Path, *more_flags: str) ->
         raise Failure(f"gcc: {(ended.stderr.strip() or 'no message').splitlines()[0]}")
 
 
-def compile_library(text: str, header: str, folder: Path, *more_flags: str) -> ctypes.CDLL:
-    """Compile the plant's C file with its header in `folder`, and load it."""
+def compile_library(text: str, header: str, folder: Path, *more_flags: str) -> Path:
+    """Compile the plant's C file with its header in `folder`; return the library."""
     source, library = folder / "plant.c", folder / f"plant{''.join(more_flags)}.so"
     source.write_text(text, encoding="utf-8")
     (folder / "plant.h").write_text(header, encoding="utf-8")
     compile_program([source], library, "-shared", "-fPIC", *more_flags)
-    return ctypes.CDLL(str(library))
+    return library

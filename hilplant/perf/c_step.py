@@ -1,13 +1,16 @@
 """The step in C, compiled where it is measured: the limit for the compiled Python."""
 
 import ctypes
+import hashlib
 from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import numba
 import numpy as np
+from llvmlite.binding import get_host_cpu_features, get_host_cpu_name
 
 from hilplant.arrays import Floats
 from hilplant.c_source import compiler as c_compiler
@@ -110,16 +113,22 @@ def compile_network() -> Tangents:
 
 @cache
 def library(*more_flags: str) -> ctypes.CDLL:
-    """Compile the step and what is measured besides it, once in a process, and load it.
+    """Compile the step and what is measured besides it, and load it; it is kept beside what numba has compiled.
 
     Raises `NotMeasurable` when there is no compiler.
     """
     text = plant_c(_MORE, Path(__file__).with_name("measured.c").read_text(encoding="utf-8"))
+    processor = get_host_cpu_name() + get_host_cpu_features().flatten()
+    decides = "\n".join((text, plant_h(), compiler(), processor, *FLAGS, *more_flags))
+    folder = Path(vars(numba.config)["CACHE_DIR"])
+    kept = folder / f"plant-{hashlib.sha256(decides.encode()).hexdigest()[:16]}.so"
     try:
-        with TemporaryDirectory(prefix="hilplant-c-") as folder:
-            return compile_library(text, plant_h(), Path(folder), "-fopenmp", *more_flags)
+        if not kept.exists():
+            with TemporaryDirectory(prefix="c-", dir=folder) as made:
+                compile_library(text, plant_h(), Path(made), "-fopenmp", *more_flags).replace(kept)
     except Failure as error:
         raise NotMeasurable(str(error)) from error
+    return ctypes.CDLL(str(kept))
 
 
 def _at(array: Floats) -> ctypes.c_void_p:

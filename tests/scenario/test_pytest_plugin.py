@@ -197,6 +197,6 @@ def test_the_same_tests_in_virtual_time_and_on_a_channel(pytester: pytest.Pytest
     ],
 )
 def test_options_that_do_not_fit_are_refused(pytester: pytest.Pytester, options: tuple[str, ...], why: str) -> None:
-    result = run(pytester, *options)
+    result = pytester.runpytest_inprocess(*PLUGIN, "-p", "no:cacheprovider", *options)  # nothing is imported
     assert result.ret == pytest.ExitCode.USAGE_ERROR
     result.stderr.fnmatch_lines([f"*{why}*"])

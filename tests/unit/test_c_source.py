@@ -180,7 +180,8 @@ def outcomes(entry: Callable[[Any, Any], None], folder: Path) -> list[tuple[Any,
         f"void call(const double *row, double *out) {{ {entry.__name__}((Array_n){{row, {{3}}}}, "
         "(WritableArray_n){out, {3}}); }"
     )
-    in_c = compile_library(f"{text}\n\n{call}\n", "", folder, "-Wall", "-Wextra", "-Werror").call
+    library = compile_library(f"{text}\n\n{call}\n", "", folder, "-Wall", "-Wextra", "-Werror")
+    in_c = ctypes.CDLL(str(library)).call
     found = []
     for x in NUMBERS:
         for y in NUMBERS:
