@@ -25,6 +25,9 @@ OLDEST = (3, 11)
 #: A file of tests stays in one process, which its fixtures serve; the files in the order of tests/conftest.py.
 ON_ALL_CPUS = ("-n", "auto", "--dist", "loadfile", "--no-loadscope-reorder")
 
+#: Tests that compare numbers with numbers: they may wait for others as long as it takes.
+UNTIMED = ("tests/oracle", "tests/property")
+
 
 def main(arguments: list[str]) -> int:
     """Prepare the environment, then run the tests or a command of hilplant in it."""
@@ -102,7 +105,7 @@ def run_quietly(command: list[str]) -> None:
 
 
 def run_all_tests(arguments: list[str]) -> int:
-    """Run linter, type checker, the tests that need nothing, then those in a browser and on vcan0 side by side."""
+    """Run linter, type checker, and the tests; those on the clock come first, the others beside pages and vcan0."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the tests have the processors, each process of them one
     pytest = ["-m", "pytest", *arguments]
     results = {
@@ -110,16 +113,18 @@ def run_all_tests(arguments: list[str]) -> int:
         "ruff format": step("ruff format", ["-m", "ruff", "format", "--check", "."]),
     }
     before = {"mypy": ["-m", "mypy", "hilplant", "start.py"], "compiled step": ["tests/compile_first.py"]}
-    with ThreadPoolExecutor() as side_by_side:
-        results |= zip(before, side_by_side.map(step, before, before.values()), strict=True)
-    results["tests"] = step("tests", [*pytest, *ON_ALL_CPUS, "-m", "not vcan and not browser"])
+    timed = [*pytest, *ON_ALL_CPUS, "-m", "not vcan and not browser", *(f"--ignore={each}" for each in UNTIMED)]
     private_vcan = ["-m", "hilplant.vcan.private_vcan", str(PYTHON)]
     counted = {
         "tests in a browser": [*pytest, "-m", "browser", "tests/web"],
         "tests on SocketCAN": [*private_vcan, *pytest, "-m", "vcan", "tests/vcan"],  # all of it on one processor
     }
     with ThreadPoolExecutor() as side_by_side:
+        results |= zip(before, side_by_side.map(step, before, before.values()), strict=True)
+        results["tests"] = step("tests", timed)
+        rest = side_by_side.submit(run_aside, "tests without a clock", [*pytest, *ON_ALL_CPUS, *UNTIMED])
         results |= dict(side_by_side.map(run_counted, counted, counted.values()))
+        results["tests without a clock"] = rest.result()
     print("\n" + "\n".join(f"{'passed' if good else 'FAILED'}  {name}" for name, good in results.items()))
     return 0 if all(results.values()) else 1
 
@@ -127,19 +132,31 @@ def run_all_tests(arguments: list[str]) -> int:
 def run_counted(name: str, command: list[str]) -> tuple[str, bool]:
     """Run tests of which none may be missing; what they say is shown when they have ended."""
     with tempfile.TemporaryDirectory(prefix="hilplant-test-") as folder:
-        report, said = Path(folder) / "report.xml", Path(folder) / "said"
-        with said.open("w") as output:
-            passed = step(name, [*command, f"--junitxml={report}"], output)
-        print(said.read_text(encoding="utf-8", errors="replace"), flush=True)
+        report = Path(folder) / "report.xml"
+        passed = shown_at_end(name, [*command, f"--junitxml={report}"])
         ran, skipped = count(report)
     return f"{name} ({ran} run, {skipped} skipped)", passed and ran > 0 and skipped == 0
 
 
-def step(name: str, arguments: list[str], output: TextIO | None = None) -> bool:
-    """Run one part of the checks in the environment, and say at once how it went."""
+def run_aside(name: str, command: list[str]) -> bool:
+    """Run tests on what others leave of the processors."""
+    return shown_at_end(name, command, ("nice", "-n", "19") if shutil.which("nice") else ())
+
+
+def shown_at_end(name: str, command: list[str], through: tuple[str, ...] = ()) -> bool:
+    """Run tests beside others; what they say is shown when they have ended."""
+    with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as said:
+        passed = step(name, command, said, through)
+        said.seek(0)
+        print(said.read(), flush=True)
+    return passed
+
+
+def step(name: str, arguments: list[str], output: TextIO | None = None, through: tuple[str, ...] = ()) -> bool:
+    """Run one part of the checks in the environment, `through` another program, and say at once how it went."""
     print(f"\n=== {name}", flush=True)
     begin = time.monotonic()
-    command = [str(PYTHON), *arguments]
+    command = [*through, str(PYTHON), *arguments]
     ended = subprocess.run(command, cwd=HERE, stdin=subprocess.DEVNULL, stdout=output, stderr=output, check=False)
     good = ended.returncode == 0
     print(f"=== {name}: {'passed' if good else 'FAILED'} after {time.monotonic() - begin:.0f} s", flush=True)
