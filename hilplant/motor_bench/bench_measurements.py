@@ -151,6 +151,22 @@ def no_load_friction(runs: Sequence[SteadyRun], constants_v_s: Sequence[Number])
     return _with_scatter(torques, speeds, quantity(slope), quantity(level))
 
 
+def bounded_friction(runs: Sequence[SteadyRun], constants_v_s: Sequence[Number]) -> MotorFriction:
+    """Return :func:`no_load_friction` where neither is negative; the one that is, within its error, is 0.
+
+    Within two standard errors 0 explains the points as well; the other is then what the points say beside it. One that
+    is farther below 0 is returned as it is.
+    """
+    damping, dry = (quantity(each) for each in no_load_friction(runs, constants_v_s))
+    torques = [quantity(constant * run.current_a) for run, constant in zip(runs, constants_v_s, strict=True)]
+    if -2.0 * damping.s <= damping.n < 0.0:
+        return MotorFriction(quantity(0.0, damping.s), mean_of(torques))
+    if -2.0 * dry.s <= dry.n < 0.0:
+        slopes = [torque / run.speed_rad_s for run, torque in zip(runs, torques, strict=True)]
+        return MotorFriction(mean_of(slopes), quantity(0.0, dry.s))
+    return MotorFriction(damping, dry)
+
+
 def _with_scatter(torques: Sequence[Number], speeds: Sequence[UFloat], slope: UFloat, level: UFloat) -> MotorFriction:
     x = np.array([speed.nominal_value for speed in speeds])
     y = np.array([quantity(torque).nominal_value for torque in torques])

@@ -16,8 +16,8 @@ from hilplant.motor_bench.bench_measurements import (
     Number,
     SteadyRun,
     back_emf_constant,
+    bounded_friction,
     mean_of,
-    no_load_friction,
     quantity,
 )  # fmt: skip
 
@@ -49,7 +49,7 @@ def with_error(value: float, relative: float) -> UFloat:
     return quantity(value, abs(value) * relative)
 
 
-def from_sheet(slow: SpeedSheet, fast: SpeedSheet, gear_ratio: float) -> SheetMotor:
+def from_sheet(slow: SpeedSheet, fast: SpeedSheet, gear_ratio: Number) -> SheetMotor:
     """Return the parameters with their standard errors.
 
     Raises
@@ -68,7 +68,7 @@ def from_sheet(slow: SpeedSheet, fast: SpeedSheet, gear_ratio: float) -> SheetMo
     constants = [back_emf_constant(run, ohm) for run, ohm in zip(runs, resistances, strict=True)]
     if not constants[1].n < constants[0].n:
         raise Failure("data sheet: the fast speed's no-load speed must be above the slow one's at the same voltage")
-    friction = no_load_friction(runs, constants)
+    friction = bounded_friction(runs, constants)
     efficiency = _efficiency((slow, fast), constants, friction, gear_ratio)
     return SheetMotor(resistances[0], constants[0], resistances[1], constants[1], friction, efficiency)
 
@@ -82,7 +82,7 @@ def _check(name: str, sheet: SpeedSheet) -> None:
 
 
 def _efficiency(
-    sheets: tuple[SpeedSheet, SpeedSheet], constants: list[UFloat], friction: MotorFriction, gear_ratio: float
+    sheets: tuple[SpeedSheet, SpeedSheet], constants: list[UFloat], friction: MotorFriction, gear_ratio: Number
 ) -> UFloat | None:
     """Return the mean efficiency from the stall torques that are given; one above 1 contradicts its own sheet."""
     found = []

@@ -11,7 +11,7 @@ from hilplant.checked_yaml.problems import BenchError, Problem
 from hilplant.checked_yaml.reading import Reading, shown
 from hilplant.failure import Failure
 from hilplant.measurements.files import sha256
-from hilplant.motor_bench.measured_motor import MODES, Values, parameters_of
+from hilplant.motor_bench.measured_motor import MODES, ToldMotor, Values, parameters_of
 from hilplant.motor_bench.readings import AnyReadings, Readings, Windings
 from hilplant.motor_bench.windings import Armature, counted, path_resistance
 
@@ -19,10 +19,11 @@ _BRUSH = ("resistance_ohm", "inductance_henry", "constant_v_s")
 
 
 class FoundMotor(NamedTuple):
-    """The parameters of a motor with their standard errors, and which of them were given and not computed."""
+    """The parameters of a motor with their standard errors, which of them were given, and which are only typical."""
 
     values: Values
     given: set[str]
+    typical: frozenset[str] = frozenset()
     windings: Windings | None = None
 
     @property
@@ -51,15 +52,15 @@ def motor_from_readings(path: Path, out: Path) -> FoundMotor:
     """
     readings = _read(path)
     try:
-        values = parameters_of(readings, path.parent)
+        told = parameters_of(readings, path.parent)
     except Failure as error:
         raise Failure(f"{path}: {error}") from error
-    written = _document(path, readings, values)
+    written = _document(path, readings, told)
     MotorFile.model_validate(written)
     head = "# From readings; `identified` has their standard errors.\n"
     write_text(out, head + yaml.safe_dump(written, sort_keys=False))
     windings = readings if isinstance(readings, Windings) else None
-    return FoundMotor(values, readings.given.model_fields_set, windings)
+    return FoundMotor(told.values, readings.given.model_fields_set, told.typical, windings)
 
 
 def _read(path: Path) -> Readings:
@@ -74,21 +75,21 @@ def _read(path: Path) -> Readings:
     return found.readings
 
 
-def _document(path: Path, readings: Readings, values: Values) -> dict[str, Any]:
-    """Return the motor file; what was neither given nor measured is listed as assumed."""
-    given = readings.given.model_fields_set
+def _document(path: Path, readings: Readings, told: ToldMotor) -> dict[str, Any]:
+    """Return the motor file; what is given or typical, and so was not measured, is listed as assumed."""
+    given, values = readings.given.model_fields_set, told.values
     brushes = {}
     for mode in MODES:
         brush: dict[str, Any] = {part: values[f"{mode}_{part}"].n for part in _BRUSH}
-        assumed = [part for part in _BRUSH if f"{mode}_{part}" in given]
+        assumed = [part for part in _BRUSH if f"{mode}_{part}" in given | told.typical]
         brushes[mode] = brush | ({"assumed": assumed} if assumed else {})
     rest = {name: value.n for name, value in values.items() if not name.startswith(MODES)}
-    assumed = [name for name in rest if name in given]
+    assumed = [name for name in rest if name in given | told.typical]
     facts = {
         "readings": path.name,
         "sha256": sha256(path),
         "standard_errors": {name: value.s for name, value in values.items() if name not in given},
     }
     head = {"name": readings.name, "source": readings.source, "status": readings.status}
-    numbers = {**brushes, **rest, "gear_ratio": readings.gear_ratio}
+    numbers = {**brushes, "gear_ratio": readings.gear_ratio, **rest}
     return head | numbers | ({"assumed": assumed} if assumed else {}) | {"identified": facts}

@@ -89,12 +89,30 @@ def read_no_load(name: str | Path = "table_5_4") -> NoLoadFile:
         With every problem, each with file and line.
 
     """
-    return _read(resources.named("measurements", name), NoLoadFile)
+    return read_described(resources.named("measurements", name), NoLoadFile)
 
 
 def read_motor(name: str | Path) -> Motor:
     """Read a motor from a file, or a shipped one by its name."""
-    return _read(resources.named("motors", name), MotorFile).record()
+    return read_described(resources.named("motors", name), MotorFile).record()
+
+
+def read_described(path: Path, kind: type[Description]) -> Description:
+    """Read a file of a kind.
+
+    Raises
+    ------
+    BenchError
+        With every problem, each with file and line.
+
+    """
+    reading = Reading()
+    document = reading.named_file(path)
+    found = reading.take(document, (), kind) if reading.sources and not document.problems else None
+    reading.raise_problems()
+    if found is None:
+        raise AssertionError("a file that failed left no problem behind")
+    return found
 
 
 def fit_no_load(measured: NoLoadFile) -> NoLoadFit:
@@ -140,13 +158,3 @@ def _mean_constant(measured: NoLoadFile, stage: str) -> float:
 def _miss(row: NoLoadRow, brush: Brush, damping_n_m_s: float, coulomb_torque_n_m: float) -> Miss:
     current, speed = steady_state(brush, damping_n_m_s, coulomb_torque_n_m, row.supply_v)
     return Miss(row, current / row.current_a - 1.0, speed / row.speed_rad_s - 1.0)
-
-
-def _read(path: Path, kind: type[Description]) -> Description:
-    reading = Reading()
-    document = reading.named_file(path)
-    found = reading.take(document, (), kind) if reading.sources and not document.problems else None
-    reading.raise_problems()
-    if found is None:
-        raise AssertionError("a file that failed left no problem behind")
-    return found

@@ -56,7 +56,13 @@ class BenchMode(Checked):
         return self
 
 
-class BenchReadings(Sourced):
+class MayLack(Sourced):
+    """Readings that need not tell all: `assume: typical` takes typical values for what is missing."""
+
+    assume: Literal["typical"] | None = None
+
+
+class BenchReadings(MayLack):
     """A motor on a bench. `run_down` is a table of time [s] and shaft speed [rad/s] with open terminals."""
 
     kind: Literal["bench"]
@@ -75,20 +81,31 @@ class BenchReadings(Sourced):
 
 
 class SheetMode(Checked):
-    """No-load and stall point of one speed; speed and torque are at the gear's output."""
+    """No-load and stall point of one speed; speed and torque are at the gear's output.
+
+    `resistance_ohm`, by a meter, may stand in the place of the stall current.
+    """
 
     voltage_v: Positive
-    no_load_current_a: Positive
     no_load_rpm: Positive
-    stall_current_a: Positive
+    no_load_current_a: Positive | None = None
+    stall_current_a: Positive | None = None
+    resistance_ohm: Positive | None = None
     stall_torque_n_m: Positive | None = None
 
+    @model_validator(mode="after")
+    def _stall(self) -> Self:
+        _one_of(self, "stall_current_a", "resistance_ohm")
+        if self.stall_torque_n_m is not None and self.stall_current_a is None and self.resistance_ohm is None:
+            raise wrong("stall_torque_n_m", text="stall_torque_n_m needs stall_current_a beside it; give both or none")
+        return self
 
-class DataSheet(Sourced):
+
+class DataSheet(MayLack):
     """A motor as its maker describes it; `tolerance` is the half-width of what each number may be, as a part of it."""
 
     kind: Literal["data_sheet"]
-    gear_ratio: Positive
+    gear_ratio: Positive | None = None
     tolerance: NotNegative = 0.0
     slow: SheetMode
     fast: SheetMode
@@ -104,7 +121,7 @@ class GivenBesideWindings(Given):
     coulomb_torque_n_m: NotNegative = 0.0
 
 
-class Windings(Sourced):
+class Windings(MayLack):
     """A motor by its magnets, coils and brushes, section 3.3; `fast_brush_deg` counts from the slow brush."""
 
     kind: Literal["windings"]

@@ -13,6 +13,8 @@ from typer.testing import CliRunner
 from hilplant.bench import check_bench, load_bench
 from hilplant.cli.main import app
 from hilplant.failure import Failure
+from hilplant.motor_bench.no_load_fit import read_motor, steady_state
+from hilplant.motor_bench.typical import typical_motor
 from hilplant.resources import shipped
 
 OHM, HENRY, CONSTANT = (1.2, 0.9), (3.1e-3, 2.4e-3), (0.045, 0.033)
@@ -146,3 +148,113 @@ def test_a_negative_friction_and_a_missing_table_are_told(tmp_path: Path) -> Non
         run(tmp_path, readings)
     with pytest.raises(Failure, match=r"absent\.csv: cannot be read"):
         run(tmp_path, bench_readings(tmp_path) | {"run_down": "absent.csv"})
+
+
+#: The shipped sets that are wiper motors of a car; what a sheet does not tell, by the name in the motor file.
+CARS = ("table_5_4", "table_5_6", "table_5_8", "table_5_9", "production_car")
+LACKING = ("slow_resistance_ohm", "slow_no_load_current_a", "slow_inductance_henry", "fast_resistance_ohm",
+           "fast_no_load_current_a", "fast_inductance_henry", "inertia_kg_m2", "gear_ratio")  # fmt: skip
+
+
+def speeds_alone(name: str, volts: float) -> dict[str, Any]:
+    """The sheet of a shipped motor that tells nothing but its speeds."""
+    motor = read_motor(name)
+    friction = motor.damping_n_m_s, motor.coulomb_torque_n_m
+    modes = {
+        mode: {
+            "voltage_v": volts,
+            "no_load_rpm": steady_state(brush, *friction, volts)[1] / motor.gear_ratio * 30 / np.pi,
+        }
+        for mode, brush in (("slow", motor.slow), ("fast", motor.fast))
+    }
+    return {"kind": "data_sheet", "name": "alone", "source": "a test", "status": "published", **modes}
+
+
+@pytest.mark.parametrize("volts", [12.0, 13.5])
+@pytest.mark.parametrize("name", CARS)
+def test_speeds_alone_give_a_motor_of_those_speeds_within_its_errors(tmp_path: Path, name: str, volts: float) -> None:
+    sheet, truth = speeds_alone(name, volts), read_motor(name)
+    found = run(tmp_path, sheet | {"assume": "typical"})
+    told = {"inertia_kg_m2": truth.inertia_kg_m2, "gear_ratio": truth.gear_ratio, "damping_n_m_s": truth.damping_n_m_s}
+    for mode, brush in (("slow", truth.slow), ("fast", truth.fast)):
+        told |= {f"{mode}_{part}": value for part, value in brush._asdict().items()}
+    for key, value in told.items():
+        assert abs(found[key] - value) < 2.0 * found[f"{key}_standard_error"], key
+    made = read_motor(tmp_path / "motor.yaml")
+    for mode, brush in (("slow", made.slow), ("fast", made.fast)):
+        _, speed = steady_state(brush, made.damping_n_m_s, made.coulomb_torque_n_m, volts)
+        assert speed / made.gear_ratio * 30 / np.pi == pytest.approx(sheet[mode]["no_load_rpm"], rel=1e-6)
+    written = yaml.safe_load((tmp_path / "motor.yaml").read_text())
+    assert written["slow"]["assumed"] == written["fast"]["assumed"] == ["resistance_ohm", "inductance_henry"]
+    assert set(written["assumed"]) == {"damping_n_m_s", "coulomb_torque_n_m", "inertia_kg_m2", "gear_ratio"}
+
+
+def test_all_that_is_missing_is_told_at_once_and_its_typical_values_are_offered(tmp_path: Path) -> None:
+    with pytest.raises(Failure) as told:
+        run(tmp_path, speeds_alone("table_5_9", 12.0))
+    asked, offered = str(told.value).split("or `assume: typical` for ")
+    for name in LACKING:
+        assert f"nothing tells {name}: give " in asked
+        assert f"{name} {typical_motor().values[name].n:g} +- " in offered
+
+
+@pytest.mark.parametrize("name", LACKING)
+def test_a_typical_value_stands_for_what_is_missing_and_for_nothing_else(tmp_path: Path, name: str) -> None:
+    readings = sheet() | {"tolerance": 0.0}
+    whole = run(tmp_path, readings)
+    mode, _, part = name.partition("_")
+    if name in readings["given"]:
+        del readings["given"][name]
+    elif mode in readings:
+        del readings[mode]["stall_current_a" if part == "resistance_ohm" else part]
+        readings[mode].pop("stall_torque_n_m")
+    else:
+        del readings[name]
+    with pytest.raises(Failure, match=f"readings.yaml: nothing tells {name}: give [^;]*; or `assume: typical` for "):
+        run(tmp_path, readings)
+    found = run(tmp_path, readings | {"assume": "typical"})
+    if name in found:
+        assert (found[name], found[f"{name}_standard_error"]) == pytest.approx(
+            (typical_motor().values[name].n, typical_motor().values[name].s)
+        )
+    other = "fast" if mode == "slow" else "slow"
+    if name != "gear_ratio":
+        for each in ("resistance_ohm", "inductance_henry", "constant_v_s"):
+            assert found[f"{other}_{each}"] == pytest.approx(whole[f"{other}_{each}"])
+
+
+@pytest.mark.parametrize(
+    ("slow", "text"),
+    [
+        ({"voltage_v": 24.0, "no_load_rpm": 40.0}, "motors for 9 to 16 V, not for 24 V: give slow_resistance_ohm"),
+        ({"voltage_v": 12.0, "no_load_rpm": 40.0, "stall_torque_n_m": 18.0}, "needs stall_current_a beside it"),
+        ({"voltage_v": 12.0, "no_load_rpm": 40.0, "stall_current_a": 9.0, "resistance_ohm": 1.0}, "tell the same"),
+        ({"voltage_v": 12.0, "no_load_rpm": 60.0}, "the fast speed's no-load speed must be above the slow one's"),
+    ],
+)
+def test_what_typical_values_do_not_help_is_told(tmp_path: Path, slow: dict[str, float], text: str) -> None:
+    with pytest.raises(Failure, match=text):
+        run(tmp_path, speeds_alone("table_5_9", 12.0) | {"assume": "typical", "slow": slow})
+
+
+def test_a_meter_s_resistance_stands_for_the_stall_current(tmp_path: Path) -> None:
+    readings = sheet()
+    for mode, ohm in zip(("slow", "fast"), OHM, strict=True):
+        del readings[mode]["stall_current_a"]
+        readings[mode]["resistance_ohm"] = ohm
+    assert_known(run(tmp_path, readings))
+
+
+@pytest.mark.parametrize(("fast_current", "zero"), [(0.93, "damping_n_m_s"), (1.6, "coulomb_torque_n_m")])
+def test_a_friction_below_0_within_its_error_is_0_and_keeps_its_error(
+    tmp_path: Path, fast_current: float, zero: str
+) -> None:
+    readings = sheet()
+    current = readings["slow"]["no_load_current_a"] * CONSTANT[0] / CONSTANT[1]
+    readings["fast"]["no_load_current_a"] = current * fast_current
+    found = run(tmp_path, readings)
+    other = ({"damping_n_m_s", "coulomb_torque_n_m"} - {zero}).pop()
+    assert found[zero] == 0.0 < found[f"{zero}_standard_error"]
+    assert found[other] > 0.0
+    with pytest.raises(Failure, match=f"{zero} comes out below 0"):
+        run(tmp_path, readings | {"tolerance": 0.001})

@@ -34,7 +34,8 @@ def motor(
     found = motor_from_readings(readings, out)
     for name, value in found.values.items():
         error = ", given" if name in found.given else f" +- {value.s:.2g}" if value.s else ", without an error"
-        typer.echo(f"  {name:22} {value.n:.6g}{error}")
+        typical = ", typical" if name in found.typical else ""
+        typer.echo(f"  {name:22} {value.n:.6g}{error}{typical}")
     if found.windings is not None:
         counts = found.figures
         slow, fast = counts["slow_coils_counted"], counts["fast_coils_counted"]
