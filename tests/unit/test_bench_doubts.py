@@ -76,6 +76,29 @@ def test_a_doubtful_part_is_a_warning_in_its_own_file(
     assert any("own.yaml:" in warning and said in warning for warning in found), found
 
 
+@pytest.mark.parametrize(
+    ("blade", "tip", "end", "cross"),
+    [
+        ("left_blade", "A", [0.5, 0.1, 0.0], False),  # 6 cm apart
+        ("left_blade", "A", [0.5, 0.3, 0.0], True),
+        ("left_blade", "A", [0.9, 0.2, 0.0], True),
+        ("left_blade", "A", [0.9, -0.2, 0.0], False),
+        ("right_blade", "B", [-0.7, -0.3, 0.0], True),
+        ("right_blade", "B", [-0.7, 0.5, 0.0], False),
+    ],
+)
+def test_blades_that_cross_on_the_screen_are_a_warning(
+    tmp_path: Path, blade: str, tip: str, end: list[float], cross: bool
+) -> None:
+    data = yaml.safe_load(LINKAGE)
+    data[blade]["points_m"][tip] = end
+    (tmp_path / "own.yaml").write_text(yaml.safe_dump(data))
+    (tmp_path / "bench.yaml").write_text(f"{HEAD}plant: {{linkage: own.yaml}}\n")
+    assert check_bench(tmp_path / "bench.yaml") == []
+    found = [warning.text for warning in load_bench(tmp_path / "bench.yaml").warnings]
+    assert found == (["the blades cross on the screen"] if cross else [])
+
+
 SCREEN = shipped("config", "screens", "table_5_9.yaml").read_text()
 
 

@@ -219,3 +219,21 @@ def test_what_is_wrong_with_signals_that_nobody_maps_does_not_matter(tmp_path: P
     assert mistakes(tmp_path, f"bus:\n  database: own.dbc\n  receive: {{{section}}}\n  send: {{}}\n") == []
     section = "A: {period_ms: 10, signals: {Good: supply_v}}"
     assert mistakes(tmp_path, f"bus:\n  database: own.dbc\n  receive: {{}}\n  send: {{{section}}}\n") == []
+
+
+@pytest.mark.parametrize(
+    ("own", "inherited", "named"),
+    [
+        ("receive: {RelayProfile1: {signals: {RelayOn: relay_on}}}", "send", "MotorStatus, ParkSwitch, Linkage ..."),
+        ("send: {MotorProfile5: {signals: {MotorCurrent: current_a}}}", "receive", "RelayCommand, SupplyCommand"),
+    ],
+)
+def test_a_mapping_that_is_inherited_beside_another_database_is_one_line_at_the_database(
+    tmp_path: Path, own: str, inherited: str, named: str
+) -> None:
+    database = Path(__file__).parents[1] / "data" / "bus" / "protected.dbc"
+    text = f"bus:\n  database: {database}\n  timeout_ms: 200\n  {own}\n"
+    told = the_mistake(tmp_path, text)
+    assert told.startswith(f"bench.yaml:4: {inherited} is inherited from ")
+    assert f"names {named}" in told and told.endswith(f"give your own {inherited}")
+    assert len(told) < 300
