@@ -7,7 +7,8 @@ from hilplant.perf import batch_cost, simulate_cost, step_cost
 
 
 def test_step_simulation_batch_and_tick_are_measured_beside_their_limits(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Few rounds: what is said is tested, not how fast this machine is."""
+    """Few rounds and sets: what is said is tested, not how fast this machine is."""
+    monkeypatch.setattr(batch_cost, "SETS", 100)
     for part in (batch_cost, simulate_cost, step_cost):
         monkeypatch.setattr(part, "_ROUNDS", 2)
     figures = measure_and_print("step,simulate,batch,tick")

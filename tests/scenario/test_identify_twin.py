@@ -9,8 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from hilplant.bench import check_bench, load_bench
+from hilplant.cli.main import app
 from hilplant.identify.cost import cost_of
 from hilplant.identify.executor import evaluator, here, on_cluster
 from hilplant.identify.experiment import simulate_run
@@ -221,9 +223,8 @@ def test_a_killed_identification_goes_on_to_the_same_files(files):
     assert "http:" not in page and "https:" not in page  # a picture in base64 holds no colon
     assert page.count("data:image/png;base64,") == 4
 
-    good, how = command(files, "validate", "slow.csv@dry", "--bench", "car.yaml", "--rms-current-a", "0.12")
-    assert subprocess.run(good, capture_output=True, check=False, **how).returncode == 0
-    strict = [*good[:-1], "0.05"]
-    refused = subprocess.run(strict, capture_output=True, check=False, **how)
-    assert refused.returncode == 1
-    assert "is above 0.05 A" in refused.stderr
+    strict = ["validate", f"{files / 'slow.csv'}@dry", "--bench", str(files / "car.yaml"), "--rms-current-a"]
+    assert CliRunner().invoke(app, [*strict, "0.12"]).exit_code == 0
+    refused = CliRunner().invoke(app, [*strict, "0.05"])
+    assert refused.exit_code == 1
+    assert "is above 0.05 A" in refused.output

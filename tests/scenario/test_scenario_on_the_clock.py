@@ -10,9 +10,12 @@ from pathlib import Path
 import pytest
 from support.channel_rig import Run
 from support.loop_rig import SLOW
+from typer.testing import CliRunner
 
 from hilplant.bench import Bench, load_bench
+from hilplant.cli.main import app
 from hilplant.failure import Failure
+from hilplant.recording.replay import replay
 from hilplant.runtime import commands as c
 from hilplant.runtime.follower import Follower
 from hilplant.signals import INPUT_INDEX
@@ -210,27 +213,20 @@ def test_the_daemon_plays_judges_and_its_recording_gets_the_same_verdict(tmp_pat
     text = WIPES[: WIPES.index("expect:")] + f"expect:\n  - {{always: current_a, below: {limit}}}\n"
     (tmp_path / "own.yaml").write_text(text)
     recording, told = tmp_path / "run.hilrec", tmp_path / "run.json"
-    command = [sys.executable, "-m", "hilplant"]
     channel = f"played-{os.getpid()}-{limit}"
     done = subprocess.run(
         [
-            *(*command, "run", "virtual", "--channel", channel, "--scenario", str(tmp_path / "own.yaml")),
-            *("--record", str(recording), "--json", str(told)),
+            *(sys.executable, "-m", "hilplant", "run", "virtual", "--channel", channel),
+            *("--scenario", str(tmp_path / "own.yaml"), "--record", str(recording), "--json", str(told)),
         ],
         capture_output=True,
         text=True,
         check=False,
     )
     summary = json.loads(told.read_text())
-    judged = subprocess.run(
-        [*command, "judge", str(recording), str(tmp_path / "own.yaml"), "--json", str(told)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    judged = CliRunner().invoke(app, ["judge", str(recording), str(tmp_path / "own.yaml"), "--json", str(told)])
     assert summary["scenario_ruling"] == json.loads(told.read_text())["results"][0]["ruling"], done.stdout
     assert f"own.yaml:11: {summary['scenario_ruling']}: always: current_a, below: {limit}" in done.stdout
     if not summary["overruns"]:
-        assert (done.returncode, judged.returncode) == (code, code), done.stdout + done.stderr
-    replayed = subprocess.run([*command, "replay", str(recording)], capture_output=True, text=True, check=False)
-    assert replayed.returncode == 0, replayed.stdout
+        assert (done.returncode, judged.exit_code) == (code, code), done.stdout + done.stderr
+    assert replay(recording).equal

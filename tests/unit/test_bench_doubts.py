@@ -2,14 +2,14 @@
 
 import json
 import math
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 import yaml
+from typer.testing import CliRunner
 
 from hilplant.bench import check_bench, load_bench
+from hilplant.cli.main import app
 from hilplant.resources import shipped
 from hilplant.signals import INPUT_INDEX
 
@@ -131,9 +131,8 @@ def test_an_angle_that_looks_like_a_rake_from_the_horizontal_is_doubted(
 def test_check_shows_warnings_and_ends_with_0(tmp_path: Path) -> None:
     path, figures = tmp_path / "bench.yaml", tmp_path / "found.json"
     path.write_text(f"{HEAD}bus:\n  safe: {{relay_on: true}}\n")
-    command = [sys.executable, "-m", "hilplant", "check", str(path), "--json", str(figures)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0
+    done = CliRunner().invoke(app, ["check", str(path), "--json", str(figures)])
+    assert done.exit_code == 0
     assert f"{path}:4: warning: relay_on: true" in done.stderr
     assert "nothing is wrong, but see 1 warning(s)" in done.stdout
     counted = json.loads(figures.read_text())
