@@ -146,7 +146,7 @@ class _PartReader:
             self._note_cut()
 
     def _note_cut(self) -> None:
-        self._note("was cut off: its writer was killed; all whole blocks before that are used")
+        self._note("was cut off: its writer was killed, or had no room; all whole blocks before that are used")
 
     def _note(self, text: str) -> None:
         note = f"{self._path}: {text}"
