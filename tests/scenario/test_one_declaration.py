@@ -110,7 +110,6 @@ def run(copy: Path, *arguments: str, compiler: str = "off") -> subprocess.Comple
         "PYTHONPATH": str(copy),
         "NUMBA_CACHE_DIR": str(copy / "cache"),
         "NUMBA_DISABLE_JIT": "1" if compiler == "off" else "0",
-        "PYTHONDONTWRITEBYTECODE": "1",
     }
     return subprocess.run(
         [sys.executable, *arguments],
