@@ -25,8 +25,9 @@ OLDEST = (3, 11)
 #: A file of tests stays in one process, which its fixtures serve; the files in the order of tests/conftest.py.
 ON_ALL_CPUS = ("-n", "auto", "--dist", "loadfile", "--no-loadscope-reorder")
 
-#: Tests that compare numbers with numbers: they may wait for others as long as it takes.
+#: Tests that compare numbers with numbers: they may wait for others, and one of them takes no longer than this.
 UNTIMED = ("tests/oracle", "tests/property")
+UNTIMED_LIMIT_S = 1800
 
 
 def main(arguments: list[str]) -> int:
@@ -122,7 +123,8 @@ def run_all_tests(arguments: list[str]) -> int:
     with ThreadPoolExecutor() as side_by_side:
         results |= zip(before, side_by_side.map(step, before, before.values()), strict=True)
         results["tests"] = step("tests", timed)
-        rest = side_by_side.submit(run_aside, "tests without a clock", [*pytest, *ON_ALL_CPUS, *UNTIMED])
+        untimed = [*pytest, *ON_ALL_CPUS, f"--timeout={UNTIMED_LIMIT_S}", *UNTIMED]
+        rest = side_by_side.submit(run_aside, "tests without a clock", untimed)
         results |= dict(side_by_side.map(run_counted, counted, counted.values()))
         results["tests without a clock"] = rest.result()
     print("\n" + "\n".join(f"{'passed' if good else 'FAILED'}  {name}" for name, good in results.items()))
