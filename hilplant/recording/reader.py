@@ -88,6 +88,8 @@ class Recording:
                 continue
             with open(part, "rb") as file:
                 for block in _PartReader(part, file, self.run.elements, self.notes).blocks():
+                    if self.span.ends_before(block.rows):
+                        return
                     rows = self.span.cut(block.rows)
                     yield block if len(rows) == len(block.rows) else Block(rows, None)
 

@@ -27,6 +27,10 @@ class Span(NamedTuple):
         within = self._within(_times_ns(rows))
         return rows if within.all() else rows.filter(pa.array(within))
 
+    def ends_before(self, rows: pa.RecordBatch) -> bool:
+        """Whether all of these rows, which follow each other in time, and all after them, are left out."""
+        return bool(self.to_s < math.inf and len(rows) and self.ends_by(int(_times_ns(rows.slice(0, 1))[0])))
+
     def begins_after(self, time_ns: int) -> bool:
         """Whether what was due before this time is left out."""
         return time_ns <= self.from_s * SECOND_NS

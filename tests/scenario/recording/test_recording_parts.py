@@ -93,6 +93,17 @@ def test_a_stretch_of_parts_reads_no_part_outside_of_it(record_run: Record, tmp_
         export(path, tmp_path / "o.csv", Span(0.5, 4.0))
 
 
+@pytest.mark.parametrize("to_s", [1.0, 1.234, 3.9])
+def test_a_stretch_of_one_file_reads_no_block_behind_it(record_run: Record, tmp_path: Path, to_s: float) -> None:
+    path = record_run(5000, block=437)
+    damaged = bytearray(path.read_bytes())
+    damaged[len(damaged) - 3000] ^= 0x55
+    path.write_bytes(damaged)
+    assert f"{round((to_s - 0.5) * 1000)} ticks" in export(path, tmp_path / "o.csv", Span(0.5, to_s))
+    with pytest.raises(Failure, match="damaged"):
+        export(path, tmp_path / "o.csv", Span(0.5, 4.99))
+
+
 def test_an_empty_stretch_is_refused(record_run: Record, tmp_path: Path) -> None:
     with pytest.raises(Failure, match="a range goes from a time to a later one"):
         export(record_run(10), tmp_path / "o.csv", Span(2.0, 2.0))
