@@ -243,7 +243,7 @@ def main() -> int:
     if not line:  # the run came to nothing before it had a door to open
         return 0
     order = json.loads(line)
-    stand_back(order["loop_cpu"])
+    stand_back(order["loop_cpu"], nice=0)  # it does little, but a command waits for it
     try:
         asyncio.run(keep(order))
     except OSError as error:

@@ -78,7 +78,7 @@ def real_time(priority: int, cpu: int | None) -> Iterator[list[Privilege]]:
             _give_back(before)
 
 
-def stand_back(loop_cpu: int | None) -> None:
+def stand_back(loop_cpu: int | None, nice: int = 5) -> None:
     """Leave, as a process beside the loop, the signals of the terminal, the priority and the CPU to the loop.
 
     Those of a service manager too, which sends SIGABRT to all of a service whose loop hangs: the recorder shall still
@@ -87,7 +87,7 @@ def stand_back(loop_cpu: int | None) -> None:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGABRT):
         signal.signal(number, signal.SIG_IGN)
     with contextlib.suppress(OSError, AttributeError):  # only Linux has them all
-        os.nice(5)
+        os.nice(nice)
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
         if others := os.sched_getaffinity(0) - {loop_cpu}:
             os.sched_setaffinity(0, others)
