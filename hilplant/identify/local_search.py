@@ -8,7 +8,7 @@ from scipy.optimize import least_squares
 
 from hilplant.arrays import Floats
 from hilplant.identify.parameters import search_space
-from hilplant.identify.residuals import LeastSquares, ResidualNoise, directions
+from hilplant.identify.residuals import LeastSquares, ResidualNoise, directions, expected_noise
 
 #: Steps of one round, at most, and when it has settled: the sum of squares changes by less than this part of itself.
 STEPS, SETTLED = 20, 3e-6
@@ -17,6 +17,8 @@ STEPS, SETTLED = 20, 3e-6
 ROUNDS, MOVES = 10, 2
 #: Weights are left as they are when they differ from what is left over by less than this factor.
 CLOSE = 1.15
+#: No weight takes a current for surer than this part of its own restlessness.
+SUREST = 0.3
 #: A parameter is at its bound when it is this near, in parts of the range.
 AT_BOUND = 1e-3
 
@@ -46,6 +48,12 @@ class Solution(NamedTuple):
     def noise(self) -> ResidualNoise:
         """What is left: root mean square of current [A] and of edge times [s]."""
         return left_over(self.problem, self.residuals)
+
+    @property
+    def variance(self) -> float:
+        """Mean square of the residuals, at least that of the surest current: data without noise say no more."""
+        surest = SUREST * expected_noise(self.problem.runs).current_a / self.problem.noise.current_a
+        return max(float(np.mean(self.residuals**2)), surest**2)
 
 
 def search(problem: LeastSquares, values: Floats, told: Callable[[float], None] = lambda _: None) -> Solution:
@@ -84,7 +92,7 @@ def search(problem: LeastSquares, values: Floats, told: Callable[[float], None] 
 
 def _weights(left: ResidualNoise, expected: ResidualNoise) -> ResidualNoise:
     """Return weights for what is left over; an edge is never surer than its rounding."""
-    return ResidualNoise(max(left.current_a, 0.3 * expected.current_a), max(left.edge_s, expected.edge_s))
+    return ResidualNoise(max(left.current_a, SUREST * expected.current_a), max(left.edge_s, expected.edge_s))
 
 
 def _close(one: ResidualNoise, other: ResidualNoise) -> bool:
@@ -148,7 +156,7 @@ class _Tied:
         margin = 1e-6 * (high - low)
         found = least_squares(
             self.residuals, np.clip(x, low + margin, high - margin), self.jacobian,
-            bounds=(low, high), method="trf", max_nfev=STEPS, ftol=SETTLED, xtol=1e-6, gtol=1e-6,
+            bounds=(low, high), method="trf", x_scale="jac", max_nfev=STEPS, ftol=SETTLED, xtol=1e-6, gtol=1e-6,
         )  # fmt: skip
         return np.asarray(found.x, np.float64), bool(found.status > 0)
 

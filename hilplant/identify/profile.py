@@ -58,7 +58,7 @@ class _Walk:
     def __init__(self, solution: Solution, known: Spread, places: list[int]) -> None:
         self.solution = solution
         self.held, self.sign = np.tile(places, 2), np.repeat([-1.0, 1.0], len(places))
-        self.variance = float(np.mean(solution.residuals**2)) * known.widening[self.held]
+        self.variance = solution.variance * known.widening[self.held]
         self.wanted = RISE_95 * self.variance
         self.errors = np.sqrt(np.diag(known.covariance))[self.held]
         bound = np.where(self.sign < 0.0, solution.low[self.held], solution.high[self.held])

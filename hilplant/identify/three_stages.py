@@ -17,6 +17,7 @@ from hilplant.identify.forces import FrictionForce, friction_forces
 from hilplant.identify.genetic import Evaluate, Generation, OnGeneration, Outcome, SearchSettings, Space, order_of
 from hilplant.identify.local_search import Solution, search
 from hilplant.identify.optimisers import budget, optimiser
+from hilplant.identify.other_ends import with_other_ends
 from hilplant.identify.parameters import Choice, search_space
 from hilplant.identify.profile import ConfidenceInterval, profile
 from hilplant.identify.residuals import LeastSquares, expected_noise
@@ -141,11 +142,11 @@ def identify(task: Task) -> Identified:
     cost, space, computed = _search_parts(task)
     outcome = _searched(task, cost, space, computed)
     clock.append(time.perf_counter())
-    solution = refined(task, outcome)
+    solution, *others = refined(task, outcome)
     clock.append(time.perf_counter())
     known = spread(solution)
-    said = verdicts(solution, known)
-    intervals = profile(solution, known, said)
+    first = verdicts(solution, known)
+    said, intervals = with_other_ends(solution, others, known, (first, profile(solution, known, first)))
     clock.append(time.perf_counter())
     row = task.choice.rows(solution.values[np.newaxis])[0]
     spent = np.diff(clock)
@@ -193,29 +194,33 @@ class _Computed:
         return self.evaluate(sets)
 
 
-def refined(task: Task, outcome: Outcome) -> Solution:
-    """Search on from where stage 2 ended; while that leaves the current unexplained, from the next start as well."""
-    expected = expected_noise(task.runs)
+def refined(task: Task, outcome: Outcome) -> list[Solution]:
+    """Search on from where stage 2 ended; while that leaves the current unexplained, from the next start as well.
+
+    Once it is explained, search again with that motor and the friction known beforehand: one end alone may stand in a
+    valley of its own, where friction at low speed and its rate stand in for each other. The best end comes first.
+    """
+    motor = np.array([parameter.place < PARAMETER_INDEX["load.model"] for parameter in task.choice.parameters])
+    mixed = np.where(motor, outcome.values, task.about)
+    solutions: list[Solution] = []
+    # Stage 2 may end where the force's factor of (4.50) is below 0: no friction, so no derivative says which way out.
+    for values in (outcome.values, mixed, task.about):
+        solutions.append(_end_from(task, values))
+        if solutions[-1].noise.current_a < EXPLAINED * expected_noise(task.runs).current_a:
+            again = np.where(motor, solutions[-1].values, task.about)
+            if not np.array_equal(values[~motor], again[~motor]):
+                solutions.append(_end_from(task, again))
+            break
+    return sorted(solutions, key=lambda solution: solution.noise.current_a)
+
+
+def _end_from(task: Task, values: Floats) -> Solution:
+    """Search from values, and tell of each round."""
+    refining = ProgressReport("refine", budget(task.settings), budget(task.settings))
 
     def refined_to(left_a: float) -> None:
         task.on_progress(refining._replace(note=f"current {left_a:.4g} A rms"))
 
-    solutions: list[Solution] = []
-    refining = ProgressReport("refine", budget(task.settings), budget(task.settings))
-    usual = np.array([parameter.usual for parameter in task.choice.parameters])
-    for values in _starts(task, outcome):
-        scale = np.maximum(np.abs(values), 0.01 * usual)
-        problem = LeastSquares(task.runs, task.choice, task.bench.tables, expected, scale)
-        solutions.append(search(problem, values, refined_to))
-        if solutions[-1].noise.current_a < EXPLAINED * expected.current_a:
-            break
-    return min(solutions, key=lambda solution: solution.noise.current_a)
-
-
-def _starts(task: Task, outcome: Outcome) -> list[Floats]:
-    """Return where to begin: at stage 2's end, with its motor and the friction known beforehand, where its space lay.
-
-    Stage 2 may end where the force's factor of (4.50) is below 0: no friction, so no derivative says which way out.
-    """
-    motor = np.array([parameter.place < PARAMETER_INDEX["load.model"] for parameter in task.choice.parameters])
-    return [outcome.values, np.where(motor, outcome.values, task.about), task.about]
+    scale = np.maximum(np.abs(values), 0.01 * np.array([parameter.usual for parameter in task.choice.parameters]))
+    problem = LeastSquares(task.runs, task.choice, task.bench.tables, expected_noise(task.runs), scale)
+    return search(problem, values, refined_to)

@@ -46,7 +46,7 @@ def spread(solution: Solution) -> Spread:
     """
     left, size, vectors = np.linalg.svd(solution.jacobian, full_matrices=False)
     size = np.maximum(size, LEAST)
-    scale = float(np.mean(solution.residuals**2))
+    scale = solution.variance
     blocks = _block_sums(solution, left)
     along = np.maximum(1.0, np.sum(blocks**2, axis=0) / scale)
     independent, widened = vectors.T / size, vectors.T * (np.sqrt(along) / size)

@@ -106,7 +106,7 @@ def test_a_search_that_ended_without_wet_friction_is_begun_again(bench):
         ended[choice.names.index(name)] = value
     problem = LeastSquares(runs, choice, bench.tables, expected_noise(runs), np.abs(ended))
     assert search(problem, ended).noise.current_a > EXPLAINED * 0.1
-    solution = refined(Task(bench, runs, choice, published_start(choice)), Outcome(ended, 1.0, ()))
+    solution = refined(Task(bench, runs, choice, published_start(choice)), Outcome(ended, 1.0, ()))[0]
     assert solution.noise.current_a == pytest.approx(0.1, rel=0.05)
 
 
