@@ -60,8 +60,8 @@ def _facts(found: Identified, origin: ResultOrigin) -> dict[str, Any]:
     if found.task.stages != ALL:
         facts["stages"] = list(found.task.stages)
     facts["intervals_95"] = {name: [low, high] for name, (low, high) in found.told_intervals.items()}
-    if found.unexplained:
-        facts["unexplained"] = found.unexplained
+    if found.withheld:
+        facts["withheld"] = found.withheld
     facts["not_told"] = [verdict.name for verdict in found.verdicts if not verdict.identifiable]
     return facts
 

@@ -29,6 +29,10 @@ from hilplant.models.records import PARAMETER_INDEX
 from hilplant.progress import OnProgress, ProgressReport, unseen
 
 _TABLE_5_7 = SearchSettings()
+_UNSETTLED = (
+    "stage 3 was still getting better when its rounds were over, so intervals are withheld; go on from what was found: "
+    "the same command with the written bench as --bench and --stages 3"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,9 +105,14 @@ class Identified(NamedTuple):
         return unexplained(self.fitted)
 
     @property
+    def withheld(self) -> list[str]:
+        """Why no interval is told: a line for each reason, none where all is well."""
+        return self.unexplained + ([] if self.solution.settled else [_UNSETTLED])
+
+    @property
     def told_intervals(self) -> dict[str, ConfidenceInterval]:
-        """95 % intervals by name of what is identifiable; none at all for a model that does not fit."""
-        if self.unexplained:
+        """95 % intervals by name of what is identifiable; none at all where they are withheld."""
+        if self.withheld:
             return {}
         told = zip(self.verdicts, self.intervals, strict=True)
         return {verdict.name: interval for verdict, interval in told if verdict.identifiable}

@@ -10,7 +10,7 @@ import yaml
 from hilplant.identify.from_files import IdentifiedFiles, Request, figures, identify_files, partial_figures
 from hilplant.identify.stages import StagedValues, parse_stages
 from hilplant.identify.three_stages import Identified
-from hilplant.identify.validation import Comparison, unexplained
+from hilplant.identify.validation import Comparison
 from hilplant.modelling.recordings import thinned
 from hilplant.progress import OnProgress
 from hilplant.reports.page import TrainingReport
@@ -50,7 +50,7 @@ def _whole(found: Identified) -> Answer:
     return {
         "figures": figures(found),
         "parameters": _parameters(found),
-        "unexplained": unexplained(found.fitted),
+        "withheld_why": found.withheld,
         "advice": [f"{', '.join(hint.tells)}: {hint.text}" for hint in found.advice],
     }
 
@@ -65,14 +65,14 @@ def _partial(done: IdentifiedFiles, found: StagedValues) -> Answer:
             {"name": parameter.name, "unit": parameter.unit, "before": float(before), "found": float(value)} | nothing
             for parameter, before, value in rows
         ],
-        "unexplained": [],
+        "withheld_why": [],
         "advice": ["intervals, and what is not identifiable, come with the third stage"],
     }
 
 
 def _parameters(found: Identified) -> list[Answer]:
     """Return before, found and interval of each parameter; None for a side that is open."""
-    withheld = bool(unexplained(found.fitted))
+    withheld = bool(found.withheld)
     rows = zip(found.verdicts, found.intervals, found.task.choice.parameters, found.task.choice.values, strict=True)
     return [
         {"name": verdict.name, "unit": parameter.unit, "before": float(before), "found": float(verdict.value),

@@ -38,7 +38,7 @@ def _content(found: Identified, known: StartingPoint, origin: ResultOrigin, note
         "rows": parameter_rows(found, known),
         "forces": found.forces,
         "untold": untold(found),
-        "unexplained": found.unexplained,
+        "withheld": found.withheld,
         "notes": notes,
         "times": times,
         "rate": times.evaluations_per_s,

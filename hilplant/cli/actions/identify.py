@@ -65,11 +65,11 @@ def _print(found: Identified, known: StartingPoint, written: list[Path]) -> None
 def _print_parameters(found: Identified) -> None:
     rows = zip(found.verdicts, found.intervals, found.task.choice.values, strict=True)
     typer.echo(f"{'parameter':24}{'before':>12}{'found':>12}   95 % interval")
-    withheld = bool(found.unexplained)
+    withheld = bool(found.withheld)
     for verdict, interval, before in rows:
         text = "not identifiable"
         if verdict.identifiable and withheld:
-            text = "withheld: the model does not fit"
+            text = "withheld"
         elif verdict.identifiable:
             text = " to ".join("open" if side is None else f"{side:.5g}" for side in interval)
         elif verdict.together:
@@ -84,5 +84,5 @@ def _print_errors(found: Identified) -> None:
     for role, compared in (("fitted", found.fitted), ("held out", found.held_out)):
         for each in (comparison.error for comparison in compared):
             typer.echo(f"{each.name} ({role}): current {each.rms_current_a:.4g} A rms, noise {each.noise_a:.4g} A")
-    for line in found.unexplained:
+    for line in found.withheld:
         typer.echo(line, err=True)

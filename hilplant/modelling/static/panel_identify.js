@@ -36,7 +36,7 @@ function show(place, answer) {
   const head = element("tr", {}, ...["parameter", "before", "found", "95 % interval", ""].map((text) => element("th", {}, text)));
   const accept = element("button", { id: "accept", onclick: async () => { if (await store.change("accept")) place.replaceChildren(element("p", { class: "good" }, "Taken into the panels; undo takes it back.")); } }, "Accept into the panels");
   const discard = element("button", { onclick: () => place.replaceChildren() }, "Discard");
-  const lines = [...answer.unexplained.map((text) => element("p", { class: "bad" }, text)), ...answer.advice.map((text) => element("p", { class: "warn" }, text)), ...answer.notes.map((text) => element("p", { class: "dim" }, text))];
+  const lines = [...answer.withheld_why.map((text) => element("p", { class: "bad" }, text)), ...answer.advice.map((text) => element("p", { class: "warn" }, text)), ...answer.notes.map((text) => element("p", { class: "dim" }, text))];
   const charts = [];
   if (answer.history.length > 1) {
     const cost = chart("Cost over the evaluations", "evaluations", [{ label: "best" }, { label: "mean", colour: "s7" }], { height: 150 });
@@ -56,6 +56,6 @@ function show(place, answer) {
 function interval(each) {
   if (each.identifiable === null) return "with stage 3";
   if (!each.identifiable) return `not identifiable${each.together.length ? `, not apart from ${each.together.join(", ")}` : ""}`;
-  if (each.withheld) return "withheld: the model does not fit";
+  if (each.withheld) return "withheld";
   return [each.low, each.high].map((side) => (side === null ? "open" : side.toPrecision(5))).join(" to ");
 }
