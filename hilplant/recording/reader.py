@@ -91,7 +91,10 @@ class Recording:
                     if self.span.ends_before(block.rows):
                         return
                     rows = self.span.cut(block.rows)
-                    yield block if len(rows) == len(block.rows) else Block(rows, None)
+                    if len(rows) == len(block.rows):
+                        yield block
+                    elif len(rows):
+                        yield Block(rows, None)
 
     def table(self, columns: list[str] | None = None) -> pa.Table:
         """Return all rows, or some of their columns, at once."""
