@@ -108,6 +108,7 @@ def run_quietly(command: list[str]) -> None:
 def run_all_tests(arguments: list[str]) -> int:
     """Run linter, type checker, and the tests; those on the clock come first, the others beside pages and vcan0."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the tests have the processors, each process of them one
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # they start many processes, each would compile all that it imports
     pytest = ["-m", "pytest", *arguments]
     results = {
         "ruff check": step("ruff check", ["-m", "ruff", "check", "."]),
