@@ -119,7 +119,7 @@ class Loop:
         self.intake: Intake | None = None
         self._was_safe = False
         self._state, self._bus_ns = plant.state_row.copy(), 0
-        self._published: list[float] = []
+        self._published: list[float] = [0.0] * (len(OUTPUTS) + len(STATUS))
         node.observe = self._observe if ring is not None else None
 
     def listen(self, mailbox: Mailbox | None, tell: Callable[[ChannelCommand], None], acting: ActingFaults) -> Intake:
