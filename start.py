@@ -25,10 +25,6 @@ OLDEST = (3, 11)
 #: A file of tests stays in one process, which its fixtures serve; the files in the order of tests/conftest.py.
 ON_ALL_CPUS = ("-n", "auto", "--dist", "loadfile", "--no-loadscope-reorder")
 
-#: Tests that compare numbers with numbers: they may wait for others, and one of them takes no longer than this.
-UNTIMED = ("tests/oracle", "tests/property")
-UNTIMED_LIMIT_S = 1800
-
 
 def main(arguments: list[str]) -> int:
     """Prepare the environment, then run the tests or a command of hilplant in it."""
@@ -106,7 +102,7 @@ def run_quietly(command: list[str]) -> None:
 
 
 def run_all_tests(arguments: list[str]) -> int:
-    """Run linter, type checker, and the tests; those on the clock come first, the others beside pages and vcan0."""
+    """Run linter, type checker, and the tests; those in a browser and those on vcan0 are run side by side."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the tests have the processors, each process of them one
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # they start many processes, each would compile all that it imports
     pytest = ["-m", "pytest", *arguments]
@@ -115,7 +111,6 @@ def run_all_tests(arguments: list[str]) -> int:
         "ruff format": step("ruff format", ["-m", "ruff", "format", "--check", "."]),
     }
     before = {"mypy": ["-m", "mypy", "hilplant", "start.py"], "compiled step": ["tests/compile_first.py"]}
-    timed = [*pytest, *ON_ALL_CPUS, "-m", "not vcan and not browser", *(f"--ignore={each}" for each in UNTIMED)]
     private_vcan = ["-m", "hilplant.vcan.private_vcan", str(PYTHON)]
     counted = {
         "tests in a browser": [*pytest, "-m", "browser", "tests/web"],
@@ -123,11 +118,8 @@ def run_all_tests(arguments: list[str]) -> int:
     }
     with ThreadPoolExecutor() as side_by_side:
         results |= zip(before, side_by_side.map(step, before, before.values()), strict=True)
-        results["tests"] = step("tests", timed)
-        untimed = [*pytest, *ON_ALL_CPUS, f"--timeout={UNTIMED_LIMIT_S}", *UNTIMED]
-        rest = side_by_side.submit(run_aside, "tests without a clock", untimed)
+        results["tests"] = step("tests", [*pytest, *ON_ALL_CPUS, "-m", "not vcan and not browser"])
         results |= dict(side_by_side.map(run_counted, counted, counted.values()))
-        results["tests without a clock"] = rest.result()
     print("\n" + "\n".join(f"{'passed' if good else 'FAILED'}  {name}" for name, good in results.items()))
     return 0 if all(results.values()) else 1
 
@@ -136,30 +128,19 @@ def run_counted(name: str, command: list[str]) -> tuple[str, bool]:
     """Run tests of which none may be missing; what they say is shown when they have ended."""
     with tempfile.TemporaryDirectory(prefix="hilplant-test-") as folder:
         report = Path(folder) / "report.xml"
-        passed = shown_at_end(name, [*command, f"--junitxml={report}"])
+        with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as said:
+            passed = step(name, [*command, f"--junitxml={report}"], said)
+            said.seek(0)
+            print(said.read(), flush=True)
         ran, skipped = count(report)
     return f"{name} ({ran} run, {skipped} skipped)", passed and ran > 0 and skipped == 0
 
 
-def run_aside(name: str, command: list[str]) -> bool:
-    """Run tests on what others leave of the processors."""
-    return shown_at_end(name, command, ("nice", "-n", "19") if shutil.which("nice") else ())
-
-
-def shown_at_end(name: str, command: list[str], through: tuple[str, ...] = ()) -> bool:
-    """Run tests beside others; what they say is shown when they have ended."""
-    with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as said:
-        passed = step(name, command, said, through)
-        said.seek(0)
-        print(said.read(), flush=True)
-    return passed
-
-
-def step(name: str, arguments: list[str], output: TextIO | None = None, through: tuple[str, ...] = ()) -> bool:
-    """Run one part of the checks in the environment, `through` another program, and say at once how it went."""
+def step(name: str, arguments: list[str], output: TextIO | None = None) -> bool:
+    """Run one part of the checks in the environment, and say at once how it went."""
     print(f"\n=== {name}", flush=True)
     begin = time.monotonic()
-    command = [*through, str(PYTHON), *arguments]
+    command = [str(PYTHON), *arguments]
     ended = subprocess.run(command, cwd=HERE, stdin=subprocess.DEVNULL, stdout=output, stderr=output, check=False)
     good = ended.returncode == 0
     print(f"=== {name}: {'passed' if good else 'FAILED'} after {time.monotonic() - begin:.0f} s", flush=True)

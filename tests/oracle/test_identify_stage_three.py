@@ -26,7 +26,7 @@ class Straight(LeastSquares):
     def __init__(self, design, data, noise=ONE):
         row = np.ones(60)
         self.choice = Choice(SEVENTEEN[:COUNT], row)
-        self.runs = (SimpleNamespace(period_s=0.001),)
+        self.runs = (SimpleNamespace(period_s=0.001, current_a=np.zeros(SAMPLES), valid=np.ones(SAMPLES, bool)),)
         self.design, self.data, self.noise = design, data, noise
         self.parameters, self.scale = COUNT, np.ones(COUNT)
 
