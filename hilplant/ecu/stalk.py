@@ -34,6 +34,12 @@ class Move(NamedTuple):
     press: str | None = None
     automatic: bool = False
 
+    @property
+    def words(self) -> str:
+        """The movement as `move_named` reads it."""
+        master = self.master.name.lower() if self.master is not None else ""
+        return self.press or (AUTOMATIC if self.automatic else f"{master}{self.interval or ''}")
+
 
 class StalkTurn(NamedTuple):
     """A movement at a time [s]."""

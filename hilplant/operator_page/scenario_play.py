@@ -197,9 +197,7 @@ class ScenarioPlay:
                 await asyncio.to_thread(channel.override, changed)
             last = now
             while stalk is not None and turns and turns[0].time_s <= at * self._bench.step_ns / SECOND_NS:
-                move = turns.pop(0).move
-                words = move.press or (move.master.name.lower() if move.master is not None else "")
-                stalk.move(f"{words}{move.interval or ''}" if words in ("", "intermittent") else words)
+                stalk.move(turns.pop(0).move.words)
             await asyncio.sleep(_EVERY_S)
 
     async def _insert_faults(self, scenario: Scenario, channel: RunChannel) -> None:

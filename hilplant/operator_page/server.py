@@ -49,6 +49,7 @@ def operator_page(description: dict[str, Any], serve_one: Callable[[Visitor], Aw
 async def keep(order: dict[str, Any]) -> None:
     """Serve the page until the run has ended."""
     access, ended = Access(), asyncio.Event()
+    failed: list[BaseException] = []
     run, bench = RunFile(**order["run"]), load_bench(order["bench_path"])
     bench = replace(bench, interface=order["interface"])
     stalk = _stalk(order["stalk"], bench)
@@ -58,9 +59,17 @@ async def keep(order: dict[str, Any]) -> None:
     @contextlib.asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
         works = [asyncio.create_task(each.work()) for each in (screen, stalk, datagrams) if each is not None]
+        for work in works:
+            work.add_done_callback(over)
         yield
         for work in works:
             work.cancel()
+
+    def over(work: asyncio.Task[None]) -> None:
+        """End the page with a work that fails: one that shows no more than half must not look as if it were alive."""
+        if not work.cancelled() and (error := work.exception()) is not None:
+            failed.append(error)
+            ended.set()
 
     def ready(url: str) -> None:
         os.write(sys.stdout.fileno(), f"{READY} {url}\n".encode())
@@ -75,6 +84,8 @@ async def keep(order: dict[str, Any]) -> None:
     page = replace(page, public=[Route("/metrics", shown_metrics)], lifespan=lifespan)
     asyncio.get_running_loop().add_reader(sys.stdin.fileno(), ended.set)
     await serve(application(page, access), access, Address.parse(order["address"]), ready, ended)
+    if failed:
+        raise failed[0]
 
 
 def _stalk(where: str, bench: Bench) -> StalkOfLines | StalkOnBus | None:

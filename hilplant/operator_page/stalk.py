@@ -1,19 +1,17 @@
 """The stalk in the operator's hand: its moves go to the bus as the ECU's message, or as lines to a demonstration."""
 
 import asyncio
-import contextlib
 import os
-from typing import Any
 
 from hilplant.bench import Bench
-from hilplant.bus.database import database_among
-from hilplant.bus.transport import Transport, open_transport
+from hilplant.bus.transport import open_transport
 from hilplant.ecu.stalk import PRESSES_S, Move, move_named, moved, wanted
+from hilplant.ecu.stalk_sender import StalkSender
 from hilplant.ecu.vocabulary import Stalk
 from hilplant.failure import Failure
-from hilplant.testing.sending import CyclicMessage
+from hilplant.units import SECOND_NS
 
-_EVERY_S = 0.1  # of messages without a cycle time
+_EVERY_S = 0.01  # looks for what is due
 
 
 class StalkOfLines:
@@ -33,59 +31,53 @@ class StalkOfLines:
 
 
 class StalkOnBus:
-    """Sends the bench's stalk message from the first move on: at its cycle time, and at once when the hand moves."""
+    """Sends the bench's messages of the stalk from the first move on."""
 
     def __init__(self, bench: Bench) -> None:
-        """Find the message.
+        """Take the messages.
 
         Raises
         ------
         Failure
             When the bench has none.
         """
-        mapped = bench.description.ecu.receive or {}
-        if not mapped:
+        if not bench.ecu_messages.driver:
             raise Failure("the bench's ECU hears no stalk message")
-        database = database_among(bench.sources)
-        messages = {each.name: each for each in database.messages} if database is not None else {}
-        self._messages = [(CyclicMessage(messages[name], None), entry.signals) for name, entry in mapped.items()]
-        self._interface = bench.interface
-        self._transport: Transport | None = None
-        self._stalk, self._pressed = Stalk(), {word: 0.0 for word in PRESSES_S}
-        self._moved = asyncio.Event()
+        self._bench = bench
+        self._sender: StalkSender | None = None
+        self._stalk, self._pressed_until_s = Stalk(), dict.fromkeys(PRESSES_S, 0.0)
 
     def move(self, text: str) -> None:
-        """Move the stalk."""
+        """Move the stalk.
+
+        Raises
+        ------
+        Failure
+            When there is no such position, or the interface cannot be opened.
+        """
         move = _known(text)
-        if self._transport is None:
-            self._transport = open_transport(self._interface)
+        if self._sender is None:
+            self._sender = StalkSender(self._bench.ecu_messages.driver, open_transport(self._bench.interface))
         if move.press is not None:
-            self._pressed[move.press] = _now_s() + PRESSES_S[move.press]
+            self._pressed_until_s[move.press] = _now_s() + PRESSES_S[move.press]
         self._stalk = moved(self._stalk, move._replace(press=None), 0.0)
-        self._moved.set()
+        self._send(self._sender)
 
     async def work(self) -> None:
         """Send for as long as the page is served."""
-        while True:
-            if self._transport is not None:
-                self._transport.receive(64)  # what others say is not for the stalk
-                for message, signals in self._messages:
-                    message.change(self._values(signals))
-                    self._transport.send(message.frame())
-            period_s = max((message.period_ns for message, _ in self._messages), default=0) / 1e9 or _EVERY_S
-            with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(self._moved.wait(), period_s)
-            self._moved.clear()
+        try:
+            while True:
+                await asyncio.sleep(_EVERY_S)
+                if self._sender is not None:
+                    self._send(self._sender)
+        finally:
+            if self._sender is not None:
+                self._sender.close()
 
-    def _values(self, signals: Any) -> dict[str, Any]:
-        now_s, stalk = _now_s(), self._stalk
-        told = {
-            "master_input": int(stalk.master),
-            "intermittent_switch": stalk.interval,
-            "flick_wipe": int(now_s < self._pressed["flick"]),
-            "wash": int(now_s < self._pressed["wash"]),
-        }
-        return {name: told[each.signal] for name, entries in signals.items() for each in entries}
+    def _send(self, sender: StalkSender) -> None:
+        now_s = _now_s()
+        flick, wash = (now_s < self._pressed_until_s[button] for button in ("flick", "wash"))
+        sender.act(round(now_s * SECOND_NS), self._stalk._replace(flick=flick, wash=wash))
 
 
 def _known(text: str) -> Move:

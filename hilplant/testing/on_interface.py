@@ -19,6 +19,7 @@ from hilplant.channel.run_files import RunFile, runs
 from hilplant.ecu.node import EcuNode
 from hilplant.ecu.settings import controller_settings
 from hilplant.ecu.stalk import stalk_at
+from hilplant.ecu.stalk_sender import StalkSender
 from hilplant.ecu.vocabulary import Stalk
 from hilplant.failure import Failure
 from hilplant.recording.reader import read_recording
@@ -29,9 +30,8 @@ from hilplant.runtime.row import ROW_WIDTH
 from hilplant.simulation.player import commands_relays
 from hilplant.simulation.scenario import Scenario
 from hilplant.testing.evidence import Evidence, recorded
-from hilplant.testing.known_signals import DatabaseSignals, database_signals, protections_of
+from hilplant.testing.known_signals import database_signals, protections_of
 from hilplant.testing.scenario_test import Judged, ScenarioTest, expected, judged
-from hilplant.testing.sending import CyclicMessage
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 from hilplant.verdicts.judgement import Judgement
 
@@ -72,7 +72,7 @@ def run_on_interface(
     transport = open_transport({**bench.interface, "channel": channel})
     command = server_command(scenario, channel, bench_name, recording)
     with contextlib.closing(transport), serving(command, str(scenario.path), recording.exists) as process:
-        acting = _Acting(scenario, bench, _actor(scenario, bench, database, (transport, stand_in)))
+        acting = _Acting(scenario, bench, _actor(scenario, bench, (transport, stand_in)))
         late = acting.until_it_ends(process)
     options = (f" --bench {bench_name}" if bench_name else "") + ("" if stand_in else " --ecu external")
     rerun = f"hilplant test {scenario.path} --on {channel}{options}"
@@ -185,45 +185,14 @@ class _StandIn:
         self._node.poll(now_ns, stalk)
 
 
-class _Hand:
-    """The driver's hand: the bench's stalk message, at its cycle time and when it changes."""
-
-    def __init__(self, bench: Bench, database: DatabaseSignals, transport: Transport) -> None:
-        (message,) = bench.ecu_messages.stalk
-        self._message = CyclicMessage(database.messages[message.name], database.protections.get(message.name))
-        self._names = _written(bench, message.name, database)
-        self._transport, self._stalk, self._due_ns = transport, Stalk(), 0
-
-    def act(self, now_ns: int, stalk: Stalk) -> None:
-        if stalk != self._stalk or now_ns >= self._due_ns:
-            self._stalk, self._due_ns = stalk, now_ns + (self._message.period_ns or 100 * MILLISECOND_NS)
-            values = {"master_input": stalk.master.name.lower(), "intermittent_switch": stalk.interval}
-            values |= {"flick_wipe": stalk.flick, "wash": stalk.wash}
-            self._message.change(
-                {written: labels.get(values[name], values[name]) for name, (written, labels) in self._names.items()}
-            )
-            self._transport.send(self._message.frame())
-        self._transport.receive(1000)  # what others say is not for the hand
-
-
-def _written(bench: Bench, message: str, database: DatabaseSignals) -> dict[str, tuple[str, dict[Any, str]]]:
-    """Return by the stand-in's names the signals of the stalk's message, and the labels of their values."""
-    found: dict[str, tuple[str, dict[Any, str]]] = {}
-    for written, entries in (bench.ecu.receive or {})[message].signals.items():
-        _, signal = database.signals[f"{message}.{written}"]
-        labels: dict[Any, str] = {str(label).lower(): str(label) for label in (signal.choices or {}).values()}
-        for entry in entries:
-            labels |= {plant.lower(): label for label, plant in (entry.choices or {}).items()}
-            found[entry.signal] = written, labels if entry.signal == "master_input" else {}
-    return found
-
-
-def _actor(scenario: Scenario, bench: Bench, database: DatabaseSignals, end: tuple[Transport, bool]) -> Actor | None:
+def _actor(scenario: Scenario, bench: Bench, end: tuple[Transport, bool]) -> Actor | None:
     transport, stand_in = end
     if commands_relays(scenario):
         return None
     if stand_in:
         return _StandIn(bench, transport)
-    if scenario.stalk and len(bench.ecu_messages.stalk) != 1:
-        raise Failure(f"{scenario.path}: the bench's ecu section needs one message of the stalk, to move it on the bus")
-    return _Hand(bench, database, transport) if scenario.stalk else None
+    if not scenario.stalk:
+        return None
+    if not bench.ecu_messages.driver:
+        raise Failure(f"{scenario.path}: the bench's ecu section needs a message of the stalk, to move it on the bus")
+    return StalkSender(bench.ecu_messages.driver, transport)
