@@ -167,13 +167,17 @@ def test_signals_are_chosen_and_a_layout_comes_back(page: Page) -> None:
     page.get_by_label("add a signal").first.select_option("load_torque_n_m")
     until(lambda: "load_torque_n_m" in page.evaluate("hilplant.session.samples.names"))
     page.on("dialog", lambda dialog: dialog.accept("mine"))
+    page.locator("#rate").select_option("60")
     page.locator("#layout-save").click()
+    page.locator("#rate").select_option("32")
     page.get_by_label("remove load_torque_n_m").click()
     until(lambda: "load_torque_n_m" not in page.evaluate("hilplant.session.chosen"))
     page.locator("#layout").select_option("mine")
     until(lambda: "load_torque_n_m" in page.evaluate("hilplant.session.samples.names"))
+    assert page.evaluate("hilplant.session.rateHz") == 60
     page.reload()
     expect(page.locator(".legend").first).to_contain_text("load_torque_n_m")
+    expect(page.locator("#rate")).to_have_value("60")
 
 
 def test_a_hidden_page_is_sent_nothing(page: Page) -> None:

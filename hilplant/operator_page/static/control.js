@@ -85,11 +85,16 @@ export class Control {
     }
     if (this.select) {
       this.select.disabled = !acts;
-      if (this.requested === null && document.activeElement !== this.select) this.select.value = value;
+      if (this.requested === null && document.activeElement !== this.select) put(this.select, String(value));
     }
     if (this.number) {
       this.number.disabled = !acts;
-      if (this.requested === null && document.activeElement !== this.number) this.number.value = Number(value.toPrecision(6));
+      if (this.requested === null && document.activeElement !== this.number) put(this.number, String(Number(value.toPrecision(6))));
     }
   }
+}
+
+// A field that is written is laid out at once, even where its value stays.
+function put(field, value) {
+  if (field.value !== value) field.value = value;
 }

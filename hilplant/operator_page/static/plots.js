@@ -4,6 +4,8 @@ import { Chart } from "./chart.js";
 import { stretchOf } from "./samples.js";
 
 const WINDOWS_S = [1, 2, 5, 10, 20, 30, 60];
+// 32: some come two to a frame, at least 29 are drawn. 60 is what most screens show.
+const RATES_HZ = [32, 60];
 const FIRST = [["current_a"], ["park_contact", "out.relay_on"], ["crank_angle_rad", "crank_speed_rad_s"]];
 
 export class Plots {
@@ -27,19 +29,20 @@ export class Plots {
     this.charts = [];
     this.body = element("div", { class: "charts" });
     this.window = choice(WINDOWS_S.map((s) => [s, `${s} s`]), { id: "window", title: "length of the time axis", onchange: () => this.setWindow(+this.window.value) });
+    this.rate = choice(RATES_HZ.map((hz) => [hz, `${hz} /s`]), { id: "rate", title: "how often the charts are drawn; 60 costs twice as much", onchange: () => this.setRate(+this.rate.value) });
     this.pauseButton = element("button", { id: "pause", title: "stop the picture, not the run (P)", onclick: () => this.togglePause() }, "Pause");
     this.cursorButton = element("button", { id: "cursors", title: "click sets A, Shift and click sets B (C)", onclick: () => this.toggleCursors() }, "Cursors");
     this.note = element("span", { class: "figure dim", id: "cursor-note" });
     this.node = element("section", { class: "panel plots", "aria-label": "Plots" },
       element("h2", {}, "Plots", element("span", { class: "row" }, this.note,
-        element("label", {}, "window", this.window), this.pauseButton, this.cursorButton,
+        element("label", {}, "window", this.window), this.rate, this.pauseButton, this.cursorButton,
         element("button", { id: "add-chart", title: "another chart", onclick: () => this.add([]) }, "+ chart"))),
       this.body);
     session.addEventListener("sample", () => this.refresh());
     session.addEventListener("row", () => this.charts.forEach((chart) => chart.tell()));
     session.addEventListener("wrong", (event) => say(this.note, event.detail));
     addEventListener("themechange", () => this.charts.forEach((chart) => chart.build()));
-    this.set({ charts: FIRST, windowS: 10 });
+    this.set({ charts: FIRST, windowS: 10, rateHz: RATES_HZ[0] });
   }
 
   signal(name) {
@@ -57,13 +60,14 @@ export class Plots {
 
   // Layouts are saved and restored by these.
   get() {
-    return { charts: this.charts.map((chart) => chart.names), windowS: this.session.windowS };
+    return { charts: this.charts.map((chart) => chart.names), windowS: this.session.windowS, rateHz: this.session.rateHz };
   }
 
-  set({ charts, windowS }) {
+  set({ charts, windowS, rateHz }) {
     this.charts = [];
     this.body.replaceChildren();
     charts.slice(0, 6).forEach((names) => this.add(names.filter((name) => this.signals.has(name)), false));
+    this.session.rateHz = this.rate.value = RATES_HZ.includes(rateHz) ? rateHz : RATES_HZ[0];
     this.setWindow(WINDOWS_S.includes(windowS) ? windowS : 10);
   }
 
@@ -110,6 +114,11 @@ export class Plots {
     this.session.windowS = seconds;
     this.window.value = seconds;
     this.choose();
+  }
+
+  setRate(hz) {
+    this.session.rateHz = hz;
+    this.session.choose(this.session.chosen);
   }
 
   // Paused or zoomed in, a stretch of the past is shown as finely as the screen allows.

@@ -16,7 +16,7 @@ export class Session extends EventTarget {
     this.samples = new Samples(description);
     this.state = { lead: null, asking: [], pages: 0, waveform: {} };
     this.page = 0;
-    this.rateHz = 32; // some come two to a frame: at least 29 are drawn
+    this.rateHz = 0; // the plots say how often
     this.windowS = 10;
     this.chosen = [];
     this.words = "connecting";
