@@ -77,6 +77,13 @@ class Visitor:
         except (WebSocketDisconnect, RuntimeError) as error:  # it went meanwhile
             raise ConnectionError from error
 
+    async def gone(self) -> None:
+        """Count why the browser went, where sending has failed before that was read."""
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(1.0):
+                async for _ in self.messages():
+                    pass
+
     async def close(self, code: int) -> None:
         """End the connection."""
         with contextlib.suppress(WebSocketDisconnect, RuntimeError, OSError):
@@ -111,8 +118,10 @@ async def greeted(websocket: WebSocket, access: Access, serve: Callable[[Visitor
             access.refuse("wrong token")
             await visitor.close(WRONG_TOKEN)
             return
-        with contextlib.suppress(ConnectionError):
+        try:
             await serve(visitor)
+        except ConnectionError:
+            await visitor.gone()
         await visitor.close(1000)
     finally:
         access.sockets -= 1

@@ -191,6 +191,20 @@ def test_what_is_too_large_or_says_nothing_is_counted_as_that(host: str, access:
     until(lambda: access.refused == {"too large": 1, "no token": 1})
 
 
+def test_what_is_too_large_is_counted_where_sending_fails_first(tmp_path: Path) -> None:
+    access = Access()
+
+    async def serve(visitor: Visitor) -> None:
+        await visitor.tell({})
+        await asyncio.sleep(0.3)  # meanwhile the message comes, and the connection is over
+        await visitor.tell({})
+
+    with served(Page(tmp_path, serve=serve), access) as url, open_socket(url[7:-1], access.token) as socket:
+        socket.recv(5)
+        socket.send("x" * 70_000)
+        until(lambda: access.refused == {"too large": 1})
+
+
 def test_a_rate_allows_its_burst_and_then_so_many_a_second() -> None:
     rate = Rate(10.0, 5.0)
     assert [rate.allows(100.0) for _ in range(6)] == [True] * 5 + [False]
