@@ -33,7 +33,7 @@ from hilplant.recording.format import (
 )
 from hilplant.recording.metadata import RunDescription, parse
 from hilplant.recording.rotation import parts_of
-from hilplant.recording.span import EVERYTHING, Span
+from hilplant.recording.span import EVERYTHING, Span, begin_of
 
 
 class Block(NamedTuple):
@@ -87,7 +87,7 @@ class Recording:
             if next_ns is not None and self.span.begins_after(next_ns):
                 continue
             with open(part, "rb") as file:
-                for block in _PartReader(part, file, self.run.elements, self.notes).blocks():
+                for block in _PartReader(part, file, self.run.elements, self.notes).blocks(self.span):
                     if self.span.ends_before(block.rows):
                         return
                     rows = self.span.cut(block.rows)
@@ -109,10 +109,12 @@ class _PartReader:
     def __init__(self, path: Path, file: BinaryIO, elements: Mapping[str, Elements], notes: list[str]) -> None:
         self._path, self._file, self._elements, self._notes = path, file, elements, notes
 
-    def blocks(self) -> Iterator[Block]:
-        """Give all whole blocks."""
+    def blocks(self, span: Span) -> Iterator[Block]:
+        """Give all whole blocks from the one on with which the span begins."""
+        place, number = begin_of(self._file, span) if span.from_s > 0.0 else (0, 0)
+        self._file.seek(0)
         stream = pa.ipc.open_stream(self._file)
-        number = 0
+        self._file.seek(max(place, self._file.tell()))
         while (block := self._next(stream, number)) is not None:
             yield block
             number += 1

@@ -1,7 +1,8 @@
 """A stretch of a recording: what was due from one time on and before another, counted from the start of the loop."""
 
 import math
-from typing import NamedTuple
+from itertools import count
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -46,6 +47,28 @@ class Span(NamedTuple):
 
 
 EVERYTHING = Span()
+
+
+def begin_of(file: BinaryIO, span: Span) -> tuple[int, int]:
+    """Return place [bytes] and number of the block of an Arrow stream with which reading a span has to begin.
+
+    On the way there nothing is decoded but when the ticks were due. Damage ends the way: who reads on names it.
+    """
+    due = pa.ipc.open_stream(file).schema.get_field_index("deadline_ns")
+    begin = file.tell(), 0
+    file.seek(0)
+    stream = pa.ipc.open_stream(file, options=pa.ipc.IpcReadOptions(included_fields=[due]))
+    try:
+        for number in count():
+            place = file.tell()
+            deadlines = stream.read_next_batch().column(0).drop_null()
+            if len(deadlines) and not span.begins_after(deadlines[0].as_py()):
+                break
+            if len(deadlines):
+                begin = place, number
+    except (StopIteration, pa.ArrowException, OSError, ValueError):
+        pass
+    return begin
 
 
 def _times_ns(rows: pa.RecordBatch) -> np.ndarray[tuple[int], np.dtype[np.int64]]:

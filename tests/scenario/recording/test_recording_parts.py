@@ -15,7 +15,7 @@ from hilplant.recording.export import export
 from hilplant.recording.reader import read_recording
 from hilplant.recording.replay import replay
 from hilplant.recording.rotation import Rotation, parts_of
-from hilplant.recording.span import Span
+from hilplant.recording.span import Span, begin_of
 
 Record = Callable[..., Path]
 
@@ -104,6 +104,45 @@ def test_a_stretch_of_one_file_reads_no_block_behind_it(record_run: Record, tmp_
     assert f"{round((to_s - 0.5) * 1000)} ticks" in export(path, tmp_path / "o.csv", Span(0.5, to_s))
     with pytest.raises(Failure, match="damaged"):
         export(path, tmp_path / "o.csv", Span(0.5, 4.99))
+
+
+def test_a_stretch_of_one_file_decodes_no_block_before_it(record_run: Record, tmp_path: Path) -> None:
+    path = record_run(900, block=131)
+    whole = read_recording(path).table(["tick"]).column("tick").to_numpy()
+    damaged = bytearray(path.read_bytes())
+    with path.open("rb") as file:
+        damaged[begin_of(file, Span(0.131))[0] - 300] ^= 0x55  # in the values of the first block of rows
+    path.write_bytes(damaged)
+    for from_s in (0.131, 0.2, 0.524, 0.8994):
+        kept = read_recording(path).within(Span(from_s)).table(["tick"]).column("tick").to_numpy()
+        assert kept.tolist() == whole[whole >= from_s * 1000.0].tolist()
+    assert "700 ticks" in export(path, tmp_path / "o.csv", Span(0.2))
+    with pytest.raises(Failure, match="damaged in block 1:"):
+        export(path, tmp_path / "o.csv", Span(0.13))
+
+
+def test_damage_in_a_stretch_is_named_by_its_block_wherever_reading_began(record_run: Record) -> None:
+    """Block 0 has no rows; block 7, the last one, is damaged."""
+    path = record_run(900, block=131)
+    damaged = bytearray(path.read_bytes())
+    damaged[len(damaged) - 300] ^= 0x55
+    path.write_bytes(damaged)
+    for from_s in (0.0, 0.1, 0.131, 0.5, 0.899):
+        with pytest.raises(Failure, match="damaged in block 7:"):
+            read_recording(path).within(Span(from_s)).table()
+
+
+def test_a_stretch_of_a_cut_file_ends_with_its_last_whole_block(record_run: Record) -> None:
+    path = record_run(900, block=131, lose=frozenset(range(262, 393)))  # the rows of a whole block are lost
+    content = path.read_bytes()
+    with path.open("rb") as file:
+        rows_at = begin_of(file, Span(0.131))[0]
+    for share in (0.5, 0.7, 0.97):
+        path.write_bytes(content[: rows_at + round((len(content) - rows_at) * share)])
+        whole = read_recording(path).table(["tick"]).column("tick").to_numpy()
+        recording = read_recording(path).within(Span(0.3))
+        assert recording.table(["tick"]).column("tick").to_numpy().tolist() == whole[whole >= 300].tolist()
+        assert "cut off" in recording.notes[0]
 
 
 def test_an_empty_stretch_is_refused(record_run: Record, tmp_path: Path) -> None:
