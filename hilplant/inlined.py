@@ -6,6 +6,8 @@ it was lowered until one that Python calls takes in all that it needs. The parts
 documented; a test compiles with them.
 """
 
+import sys
+from functools import cache
 from typing import Any
 
 from numba.core import codegen, compiler, registry, sigutils, typing
@@ -17,6 +19,22 @@ _sigutils: Any = sigutils
 _typing: Any = typing
 _Library: Any = codegen.JITCodeLibrary
 _Dispatcher: Any = registry.CPUDispatcher
+
+
+@cache
+def _load_arrays() -> None:
+    """Load what numba knows of arrays, without scipy.linalg, which would be a tenth of a run's start.
+
+    numba asks there whether it may multiply matrices by BLAS, and loads it again before it does so: the answer is yes.
+    """
+    if "scipy.linalg" in sys.modules:
+        return
+    sys.modules["scipy.linalg"] = None  # type: ignore[assignment]  # Python's word for a module that cannot be imported
+    try:
+        from numba.np import arraymath
+    finally:
+        del sys.modules["scipy.linalg"]
+    vars(arraymath)["_HAVE_BLAS"] = True
 
 
 class _Piece(_Library):  # type: ignore[misc]
@@ -38,6 +56,11 @@ class Inlined(_Dispatcher):  # type: ignore[misc]
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         self._pieces: dict[tuple[Any, ...], Any] = {}
+
+    def compile(self, sig: Any) -> Any:
+        """Compile for a signature, or load what was compiled."""
+        _load_arrays()
+        return super().compile(sig)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Return what types a call from compiled code."""

@@ -10,7 +10,6 @@ from hilplant.bench import Bench
 from hilplant.channel.run_files import RunFile
 from hilplant.companion import Companion, companion
 from hilplant.extras import need
-from hilplant.operator_page.description import describe
 
 #: Where the stalk's moves go: to the bus, or as lines to the program that started the page.
 STALK_ON_BUS, STALK_AS_LINES, NO_STALK = "bus", "lines", ""
@@ -41,6 +40,8 @@ def page_beside(bench: Bench, run: RunFile, options: PageOptions | None) -> Iter
             yield None
         return
     need("web")
+    from hilplant.operator_page.description import describe  # takes a fifth of a second, which a run without has
+
     reachable = bench.interface.get("interface") != "virtual"
     order = {
         "run": asdict(run),

@@ -21,7 +21,6 @@ from hilplant.runtime.commands import COMMAND_DTYPE, KINDS, OUTCOMES, OWNERS, PA
 from hilplant.runtime.frame_slot import BITRATE_SWITCH, ERROR, EXTENDED, FD, REMOTE, SENT
 from hilplant.signals import INPUTS, OUTPUTS, STATUS
 
-FORMAT_VERSION = "3"
 #: Formats that can be read, and how each stores an output: 1 as it is, 3 as differences.
 OUTPUT_TYPES = {"1": pa.float64(), "3": pa.int64()}
 KEY_PREFIX = "hilplant."

@@ -16,10 +16,10 @@ import numpy as np
 
 from hilplant import __version__
 from hilplant.arrays import Floats
-from hilplant.recording.adoption import FORMAT_1, ROWS, Elements, adopted_row, elements_of
-from hilplant.recording.format import FORMAT_VERSION
+from hilplant.recording.elements import FORMAT_1, ROWS, Elements, adopted_row, elements_of
 from hilplant.recording.recorded_bench import RecordedBench
 
+FORMAT_VERSION = "3"
 _AT_THE_START = {"first_tick": "0", "first_ns": "0"}
 
 
@@ -35,7 +35,7 @@ class RunDescription:
     sources: dict[str, str]
     start_utc: datetime  # when the recorder was ready; the first tick follows within the loop's start-up
     build: dict[str, str]  # versions of everything that the outputs' bits depend on
-    elements: Mapping[str, Elements]  # of what was recorded, by the keys of `adoption.ROWS`
+    elements: Mapping[str, Elements]  # of what was recorded, by the keys of `elements.ROWS`
     series: str  # the same in all parts of one run, and in no other
     part: int  # counted from 1
     first_tick: int  # of this part; `state_row` is the state before it

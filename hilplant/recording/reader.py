@@ -11,16 +11,8 @@ import pyarrow as pa
 
 from hilplant.arrays import Floats
 from hilplant.failure import Failure
-from hilplant.recording.adoption import (
-    ROWS,
-    Elements,
-    ForeignElement,
-    adopted_row,
-    adopted_rows,
-    missing_columns,
-    undescribed_columns,
-    unknown_columns,
-)
+from hilplant.recording.adoption import adopted_rows, missing_columns, undescribed_columns, unknown_columns
+from hilplant.recording.elements import ROWS, Elements, ForeignElement, adopted_row
 from hilplant.recording.format import (
     CHECKSUM_KEY,
     KEY_PREFIX,

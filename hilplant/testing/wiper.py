@@ -24,8 +24,9 @@ from hilplant.verdicts.binding import Placed, bind
 from hilplant.verdicts.conditions import level_of
 from hilplant.verdicts.expectations import Expectation
 from hilplant.verdicts.known import Known
+from hilplant.verdicts.limits import Limits
 from hilplant.verdicts.ticks import margin
-from hilplant.verdicts.written import DEFAULT_WAIT_S, Limits, kind_of
+from hilplant.verdicts.written import DEFAULT_WAIT_S, kind_of
 
 if TYPE_CHECKING:
     from hilplant.testing.clocked_bench import ClockedBench

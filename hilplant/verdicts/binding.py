@@ -25,6 +25,7 @@ from hilplant.verdicts.expectations import (
     Window,
 )
 from hilplant.verdicts.known import Known
+from hilplant.verdicts.limits import Limits
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +93,7 @@ def _edge(entry: w.RisesEntry | w.FallsEntry, known: Known) -> Rule:
 
 
 def _settles(entry: w.SettlesEntry, known: Known) -> Rule:
-    limits = w.Limits(equals=entry.to, tolerance=entry.tolerance)
+    limits = Limits(equals=entry.to, tolerance=entry.tolerance)
     hold = None if entry.hold is None else known.ticks(entry.hold)
     return Settles(level_of(entry.settles, limits, known), _floor(entry.by, known), hold)
 

@@ -7,9 +7,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from hilplant.checked_yaml.problems import suggestion
-from hilplant.verdicts import written as w
 from hilplant.verdicts.expectations import Condition, Edge, Level
 from hilplant.verdicts.known import Known, KnownSignal
+from hilplant.verdicts.limits import Limits
 
 
 def condition_of(parts: Mapping[str, Any], known: Known) -> Condition:
@@ -21,7 +21,7 @@ def _part(name: str, part: Any, known: Known) -> Level | Edge:
     if part in ("rises", "falls"):
         return Edge(known_name(name, known), part == "rises")
     if not isinstance(part, dict):
-        return level_of(name, w.Limits(equals=part), known)
+        return level_of(name, Limits(equals=part), known)
     crossing = {"rises", "falls"} & set(part)
     if crossing:
         level = part[crossing.pop()]
@@ -29,7 +29,7 @@ def _part(name: str, part: Any, known: Known) -> Level | Edge:
             raise ValueError(f"{name}: write {{rises: LEVEL}} or {{falls: LEVEL}} alone")
         return Edge(known_name(name, known), "rises" in part, float(level))
     try:
-        limits = w.Limits.model_validate(part)
+        limits = Limits.model_validate(part)
     except ValidationError as error:
         raise ValueError(f"{name}: {error.errors()[0]['msg']}") from None
     if not limits.stated:
@@ -37,7 +37,7 @@ def _part(name: str, part: Any, known: Known) -> Level | Edge:
     return level_of(name, limits, known)
 
 
-def level_of(name: str, limits: w.Limits, known: Known) -> Level:
+def level_of(name: str, limits: Limits, known: Known) -> Level:
     """Return the level of a signal that obeys limits; ValueError for names that nobody knows."""
     signal = known.signals[known_name(name, known)]
     tolerance = limits.tolerance if limits.tolerance is not None else 0.5 if signal.discrete else 0.0
@@ -45,7 +45,7 @@ def level_of(name: str, limits: w.Limits, known: Known) -> Level:
     return Level(name, lowest, highest)
 
 
-def bounds(limits: w.Limits, tolerance: float, named: tuple[str, KnownSignal] | None) -> tuple[float, float]:
+def bounds(limits: Limits, tolerance: float, named: tuple[str, KnownSignal] | None) -> tuple[float, float]:
     """Return the lowest and highest value that obey limits; a signal that is `named` may have labels."""
     if limits.equals is not None:
         wanted = _number(limits.equals, named)

@@ -6,43 +6,14 @@ from pydantic import ConfigDict, Field, model_validator
 
 from hilplant.checked_yaml.checked import Checked, NotNegative, wrong
 from hilplant.checked_yaml.problems import suggestion
+from hilplant.verdicts.limits import Conditions, Limits, Pair, Value
 
 #: What every wait is limited to that says nothing else [s].
 DEFAULT_WAIT_S = 10.0
 
-Value = bool | int | float | str
-#: A signal's value, one of its labels, `rises` or `falls`, or a group of limits.
-Part = Value | dict[str, Value | list[float]]
-Conditions = Annotated[dict[str, Part], Field(min_length=1)]
 #: A time [s], a mark's name, or a condition; or a list of them, followed one after the other.
 Instant = Value | Conditions
 Instants = Instant | Annotated[list[Instant], Field(min_length=1)]
-Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
-
-
-class Limits(Checked):
-    """What a value may be; limits are included."""
-
-    below: Value | None = None
-    above: Value | None = None
-    between: Pair | None = None
-    equals: Value | None = None
-    tolerance: NotNegative | None = None
-
-    @model_validator(mode="after")
-    def _sound(self) -> "Limits":
-        if self.equals is not None and {self.below, self.above, self.between} != {None}:
-            raise wrong("equals", text="equals stands alone, with tolerance at most")
-        if self.tolerance is not None and self.equals is None:
-            raise wrong("tolerance", text="tolerance needs equals")
-        if self.between is not None and self.between[0] > self.between[1]:
-            raise wrong("between", text="between must be [lowest, highest]")
-        return self
-
-    @property
-    def stated(self) -> bool:
-        """Whether anything is asked."""
-        return any(value is not None for value in (self.below, self.above, self.between, self.equals))
 
 
 def _limits_of(entry: "Written") -> Limits:

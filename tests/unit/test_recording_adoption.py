@@ -7,7 +7,8 @@ import pyarrow as pa
 import pytest
 
 from hilplant.models.records import PARAMETER_INDEX, STATE_INDEX, Parameters, State
-from hilplant.recording.adoption import FORMAT_1, ForeignElement, adopted_row, adopted_rows, elements_of
+from hilplant.recording.adoption import adopted_rows
+from hilplant.recording.elements import FORMAT_1, ForeignElement, adopted_row, elements_of
 from hilplant.recording.format import EVENT_TYPE, schema
 from hilplant.signals import Inputs
 

@@ -21,8 +21,6 @@ from hilplant.runtime.loop import Loop
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.scheduling import Privilege
 from hilplant.runtime.server import StopRequest, Summary, ended_by_signals, serve
-from hilplant.simulation.player import ScenarioPlayer
-from hilplant.simulation.scenario import Scenario, load_scenario
 from hilplant.units import MILLISECOND_NS
 
 #: Counts that the line before the faults has told already.
@@ -32,6 +30,7 @@ if TYPE_CHECKING:
     from hilplant.cli.actions.live_judge import Verdict
     from hilplant.control.own import OwnLoopSeat
     from hilplant.control.seat import LoopSeat
+    from hilplant.simulation.scenario import Scenario
 
 
 class Played(NamedTuple):
@@ -66,7 +65,7 @@ def _run(  # noqa: PLR0913, PLR0917
     page: PageOptions | None,
     scenario: Played | None,
 ) -> Summary:
-    played = None if scenario is None else load_scenario(scenario.path)
+    played = None if scenario is None else _read(scenario.path)
     bench = _loaded(name, channel, played)
     seat: LoopSeat | OwnLoopSeat | None = None
     if inside is not None:
@@ -102,7 +101,14 @@ def _run(  # noqa: PLR0913, PLR0917
     return summary
 
 
-def _loaded(name: str, channel: str | None, played: Scenario | None) -> Bench:
+def _read(path: Path) -> "Scenario":
+    """Read a scenario; what it takes is loaded for those that play one."""
+    from hilplant.simulation.scenario import load_scenario
+
+    return load_scenario(path)
+
+
+def _loaded(name: str, channel: str | None, played: "Scenario | None") -> Bench:
     """Return the bench, on another channel if one is given, at the scenario's start if one is played."""
     bench = load_bench(name)
     if played is not None:
@@ -113,7 +119,7 @@ def _loaded(name: str, channel: str | None, played: Scenario | None) -> Bench:
 
 
 def _judge(
-    name: str, scenario: Played | None, played: Scenario, ring: Ring, loop_cpu: int | None
+    name: str, scenario: Played | None, played: "Scenario", ring: Ring, loop_cpu: int | None
 ) -> "AbstractContextManager[Verdict | None]":
     """Return what judges beside the loop, if there is anything to judge."""
     if scenario is None or not scenario.judged or not played.expect:
@@ -132,8 +138,10 @@ def _prepare(seat: "LoopSeat | OwnLoopSeat | None", loop: Loop) -> None:
         loop.intake.controlled = True
 
 
-def _play(scenario: Scenario, bench: Bench, stop: StopRequest, prepare: Callable[[Loop], None], loop: Loop) -> None:
+def _play(scenario: "Scenario", bench: Bench, stop: StopRequest, prepare: Callable[[Loop], None], loop: Loop) -> None:
     """Let the loop play a scenario, and end with it."""
+    from hilplant.simulation.player import ScenarioPlayer
+
     prepare(loop)
     if loop.intake is not None:
         faults = loop.intake.faults
