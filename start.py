@@ -22,6 +22,7 @@ VENV = HERE / ".venv"
 STAMP = VENV / "hilplant-installed"
 PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 OLDEST = (3, 11)
+NEITHER = "not vcan and not browser"
 #: A file of tests stays in one process, which its fixtures serve; the files in the order of tests/conftest.py.
 ON_ALL_CPUS = ("-n", "auto", "--dist", "loadfile", "--no-loadscope-reorder")
 
@@ -102,7 +103,7 @@ def run_quietly(command: list[str]) -> None:
 
 
 def run_all_tests(arguments: list[str]) -> int:
-    """Run linter, type checker, and the tests; those in a browser and those on vcan0 are run side by side."""
+    """Run linter, type checker, and the tests: two parts side by side, where one alone would leave a processor idle."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the tests have the processors, each process of them one
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # they start many processes, each would compile all that it imports
     pytest = ["-m", "pytest", *arguments]
@@ -118,7 +119,9 @@ def run_all_tests(arguments: list[str]) -> int:
     }
     with ThreadPoolExecutor() as side_by_side:
         results |= zip(before, side_by_side.map(step, before, before.values()), strict=True)
-        results["tests"] = step("tests", [*pytest, *ON_ALL_CPUS, "-m", "not vcan and not browser"])
+        clocked = side_by_side.submit(step_kept, "tests on the clock", [*pytest, "-m", f"clocked and {NEITHER}"])
+        results["tests"] = step("tests", [*pytest, *ON_ALL_CPUS, "-m", f"not clocked and {NEITHER}"], stand_back=True)
+        results["tests on the clock"] = clocked.result()
         results |= dict(side_by_side.map(run_counted, counted, counted.values()))
     print("\n" + "\n".join(f"{'passed' if good else 'FAILED'}  {name}" for name, good in results.items()))
     return 0 if all(results.values()) else 1
@@ -128,19 +131,26 @@ def run_counted(name: str, command: list[str]) -> tuple[str, bool]:
     """Run tests of which none may be missing; what they say is shown when they have ended."""
     with tempfile.TemporaryDirectory(prefix="hilplant-test-") as folder:
         report = Path(folder) / "report.xml"
-        with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as said:
-            passed = step(name, [*command, f"--junitxml={report}"], said)
-            said.seek(0)
-            print(said.read(), flush=True)
+        passed = step_kept(name, [*command, f"--junitxml={report}"])
         ran, skipped = count(report)
     return f"{name} ({ran} run, {skipped} skipped)", passed and ran > 0 and skipped == 0
 
 
-def step(name: str, arguments: list[str], output: TextIO | None = None) -> bool:
-    """Run one part of the checks in the environment, and say at once how it went."""
+def step_kept(name: str, arguments: list[str]) -> bool:
+    """Run one part beside another; what it says is shown when it has ended."""
+    with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as said:
+        passed = step(name, arguments, said)
+        said.seek(0)
+        print(said.read(), flush=True)
+    return passed
+
+
+def step(name: str, arguments: list[str], output: TextIO | None = None, stand_back: bool = False) -> bool:
+    """Run one part of the checks in the environment, and say at once how it went; `stand_back` for one beside it."""
     print(f"\n=== {name}", flush=True)
     begin = time.monotonic()
-    command = [str(PYTHON), *arguments]
+    nice = ["nice", "-n", "10"] if stand_back and shutil.which("nice") else []
+    command = [*nice, str(PYTHON), *arguments]
     ended = subprocess.run(command, cwd=HERE, stdin=subprocess.DEVNULL, stdout=output, stderr=output, check=False)
     good = ended.returncode == 0
     print(f"=== {name}: {'passed' if good else 'FAILED'} after {time.monotonic() - begin:.0f} s", flush=True)
