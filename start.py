@@ -119,6 +119,7 @@ def run_all_tests(arguments: list[str]) -> int:
     }
     with ThreadPoolExecutor() as side_by_side:
         results |= zip(before, side_by_side.map(step, before, before.values()), strict=True)
+        os.environ["HILPLANT_COMPILED"] = "1" if results["compiled step"] else ""
         clocked = side_by_side.submit(step_kept, "tests on the clock", [*pytest, "-m", f"clocked and {NEITHER}"])
         results["tests"] = step("tests", [*pytest, *ON_ALL_CPUS, "-m", f"not clocked and {NEITHER}"], stand_back=True)
         results["tests on the clock"] = clocked.result()

@@ -25,11 +25,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if HERE in item.path.parents:
             item.add_marker(pytest.mark.vcan)
+    items.sort(key=lambda item: "shared_server" in getattr(item, "fixturenames", ()))  # it stays until the end
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
-    """Compile what the daemon runs before any test's time counts: with nothing in the cache a guest takes minutes."""
-    if not session.config.option.collectonly and any(HERE in item.path.parents for item in session.items):
+    """Compile what the daemon runs before any test's time counts: with nothing in the cache a guest takes minutes.
+
+    With `HILPLANT_COMPILED` that is done.
+    """
+    compiled = session.config.option.collectonly or os.environ.get("HILPLANT_COMPILED")
+    if not compiled and any(HERE in item.path.parents for item in session.items):
         words = [sys.executable, "-m", "hilplant", "run", "virtual", "--seconds", "0.1"]
         subprocess.run(words, capture_output=True, check=False)
 
@@ -199,9 +204,9 @@ def server(spawn: Callable[..., Any], vcan: str, tmp_path: Path) -> Any:
     return daemon
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def shared_server() -> Iterator[Spawned]:
-    """The daemon on the default bench for all tests of a file that leave it running: a start takes a guest long."""
+    """The daemon on the default bench for all tests that leave it running: a start takes a guest long."""
     with spawning() as start:
         daemon = start(*HILPLANT, "run", SOFT_TIME)
         daemon.wait_for("serves on", START_PATIENCE_S)
