@@ -235,12 +235,13 @@ def main() -> int:
     verdicts: list[str] = []
     with tempfile.TemporaryDirectory(prefix="hilplant-mutants-") as folder:
         copy = Copy(Path(folder) / "copy")
-        for tests in {tuple(tests_for(mutant.file, options.near)) for mutant in drawn} if options.check else ():
-            if not (trial := copy.clean(list(tests))).passed:
+        tests_of = {mutant.file: tests_for(mutant.file, options.near) for mutant in drawn}  # those that the copy has
+        for tests in tests_of.values() if options.check else ():
+            if not (trial := copy.clean(tests)).passed:
                 how = "fail" if trial.ended else "come to no end"
                 sys.exit(f"these {how} without a mutant: {' '.join(tests)}")
         for turn, mutant in enumerate(drawn, 1):
-            verdicts.append(copy.verdict(mutant, tests_for(mutant.file, options.near), turn))
+            verdicts.append(copy.verdict(mutant, tests_of[mutant.file], turn))
             print(f"{verdicts[-1]:<7} {_place(mutant)}: {_change(mutant)}", flush=True)
     alive, slow = verdicts.count(LIVES), verdicts.count(SLOW)
     print(f"{verdicts.count(KILLED)} killed, {alive} alive, of {len(drawn) - slow}; {slow} slow, not counted")

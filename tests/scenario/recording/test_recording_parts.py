@@ -1,6 +1,7 @@
 """A recording in parts: each replays on its own, together they are the run, and a stretch of it can be exported."""
 
 from collections.abc import Callable
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,13 @@ from pyarrow import parquet
 from hilplant.failure import Failure
 from hilplant.recording.differences import decode, encode
 from hilplant.recording.export import export
+from hilplant.recording.metadata import describe
 from hilplant.recording.reader import read_recording
 from hilplant.recording.replay import replay
 from hilplant.recording.rotation import Rotation, parts_of
 from hilplant.recording.span import Span, begin_of
+from hilplant.recording.writer import RecordingWriter
+from hilplant.runtime.frame_slot import FRAME_DTYPE
 
 Record = Callable[..., Path]
 
@@ -50,6 +54,26 @@ def test_only_the_newest_parts_are_kept_and_they_replay_together(record_run: Rec
     assert [part.stem[-4:] for part in parts_of(path)] == ["0007", "0008", "0009"]
     result = replay(path)
     assert (result.equal, result.ticks) == (True, 3000)
+
+
+def test_a_day_in_parts_of_an_hour_keeps_the_last_ones_to_the_tick(tmp_path: Path, bench: Any, row_width: int) -> None:
+    """Ticks of ten seconds in blocks that do not end with the hours; from 10:59:30 on nothing was due for a minute."""
+    due_s = np.array([second for second in range(0, 86_400, 10) if not 39_570 <= second < 39_630])
+    rows = np.zeros((len(due_s), row_width))
+    rows[:, 0], rows[:, 1] = np.arange(len(due_s)), due_s * 1e9
+    path = tmp_path / "day.hilrec"
+    rotation = Rotation.parse("1h", keep=14)
+    writer = RecordingWriter(path, describe(bench, datetime.now(UTC)), row_width, rotation)
+    for begin in range(0, len(rows), 110):
+        writer.add(rows[begin : begin + 110], np.empty(0, FRAME_DTYPE))
+        writer.write(last=begin + 110 >= len(rows))
+    writer.close()
+    parts = parts_of(path)
+    assert [int(part.stem[-4:]) for part in parts] == list(range(11, 25))
+    found = [read_recording(part).table(["deadline_ns"]).column(0).to_numpy() / 1e9 for part in parts]
+    hours = [36_000, *(39_630 + 3600 * number for number in range(13))]  # each from the first tick of its part
+    assert [seconds[0] for seconds in found] == hours
+    assert np.concatenate(found).tolist() == due_s[due_s >= 36_000].tolist()
 
 
 def test_a_part_that_is_missing_is_a_gap_and_parts_of_two_runs_are_refused(record_run: Record) -> None:
