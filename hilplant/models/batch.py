@@ -3,6 +3,7 @@
 from typing import Any
 
 from hilplant.jit import compiled_for_threads
+from hilplant.models.guard import admitted
 from hilplant.models.plant import step
 from hilplant.models.records import Parameters, State
 from hilplant.models.row import unpack, write
@@ -18,7 +19,7 @@ def simulate_columns(  # noqa: PLR0913, PLR0917
     `columns` are their places in ``signals.OUTPUTS``, `output` an array [ticks, len(columns)]. `row` is room
     for all outputs of one tick.
     """
-    parameters, state = unpack(Parameters, parameter_row), unpack(State, state_row)
+    parameters, state = unpack(Parameters, parameter_row), admitted(unpack(State, state_row))
     for tick in range(input_rows.shape[0]):
         state, outputs = step(state, unpack(Inputs, input_rows[tick]), parameters, tables)
         write(outputs, row)

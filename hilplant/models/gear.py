@@ -25,11 +25,8 @@ def through_gear(
 
     Which of the two holds is decided by `motion`, its current and speed.
     """
-    ratio = motor.gear_ratio
-    brush = connection.brush
-    constant = brush.constant_v_s if connection.closed > 0.5 else 0.0
-    damping = motor.damping_n_m_s + connection.second.damping_n_m_s
-    pull = constant * motion.current + connection.second.push_n_m - damping * motion.speed
+    ratio, alone = motor.gear_ratio, unloaded(connection, motor)
+    pull = alone.constant * motion.current + alone.push - alone.damping * motion.speed
     torque = direction * pull - motor.coulomb_torque_n_m
     dry = direction * load.bias + load.dry
     driving = (
@@ -37,13 +34,29 @@ def through_gear(
     )
     passing = 1.0 / (ratio * motor.gear_efficiency) if driving else motor.gear_back_efficiency / ratio
     return ArmatureDrive(
-        voltage=connection.source_v if connection.closed > 0.5 else 0.0,
+        voltage=alone.voltage,
+        resistance=alone.resistance,
+        inductance=alone.inductance,
+        constant=alone.constant,
+        inertia=motor.inertia_kg_m2 + load.inertia * passing / ratio,
+        damping=alone.damping + load.slope * passing / ratio,
+        dry_torque=motor.coulomb_torque_n_m + dry * passing,
+        push=alone.push,
+    )
+
+
+@compiled
+def unloaded(connection: Connection, motor: Motor) -> ArmatureDrive:
+    """Return what acts on the armature where nothing is behind the gear."""
+    brush, closed = connection.brush, connection.closed > 0.5
+    return ArmatureDrive(
+        voltage=connection.source_v if closed else 0.0,
         resistance=brush.resistance_ohm,
         inductance=brush.inductance_henry,
-        constant=constant,
-        inertia=motor.inertia_kg_m2 + load.inertia * passing / ratio,
-        damping=damping + load.slope * passing / ratio,
-        dry_torque=motor.coulomb_torque_n_m + dry * passing,
+        constant=brush.constant_v_s if closed else 0.0,
+        inertia=motor.inertia_kg_m2,
+        damping=motor.damping_n_m_s + connection.second.damping_n_m_s,
+        dry_torque=motor.coulomb_torque_n_m,
         push=connection.second.push_n_m,
     )
 

@@ -18,23 +18,31 @@ class LastAngle(NamedTuple):
 
 
 @compiled
+def admitted(state: State) -> State:
+    """Return a state from outside as it is when all of it is finite, else with the guard set."""
+    return state if all_finite(state) else guarded(state)
+
+
+@compiled
 def admit(state: State, inputs: Inputs) -> tuple[State, Inputs]:
-    """Return state and inputs as they are when all are finite and the guard is not set.
+    """Return state and inputs as they are when all inputs are finite and the guard is not set.
 
     Else the guard is set, the motor stands still without current where it was, its relays are off, and inputs that
-    are not finite are 0.
+    are not finite are 0. The state is one that :func:`admitted` or :func:`hold_if_wrong` has returned.
     """
-    if all_finite(state) and all_finite(inputs) and state.guard == 0.0:
+    if all_finite(inputs) and state.guard == 0.0:
         return state, inputs
     return guarded(state), guarded(inputs)
 
 
 @compiled
-def hold_if_wrong(state: State, last_angle: float) -> State:
-    """Return `state`, or if its motion is not finite, or the guard set, a motor at rest at the last angle.
+def hold_if_wrong(state: State, last_angle: float, all_moves: bool) -> State:
+    """Return `state`, or if it is not finite, or the guard set, a motor at rest at the last angle.
 
-    A circuit that is switched off may still turn the motor; it must not when the guard is set.
+    Where not `all_moves`, only current, speed and angle can have become anything else. A circuit that is switched off
+    may still turn the motor; it must not when the guard is set.
     """
-    if all_finite(state) and state.guard == 0.0:
+    motion = 0.0 * (state.current_a + state.motor_speed_rad_s + state.crank_angle_rad)
+    if motion == 0.0 and state.guard == 0.0 and (not all_moves or all_finite(state)):
         return state
     return guarded(changed(state, LastAngle(last_angle)))

@@ -15,7 +15,7 @@ Within a tick the losses are constant and the temperatures exact; R and K are th
 import math
 from typing import NamedTuple
 
-from hilplant.jit import compiled
+from hilplant.jit import compiled, compiled_apart
 from hilplant.models.armature import ArmatureMotion
 from hilplant.models.circuit import Connection
 from hilplant.models.records import Brush, Motor, Parameters
@@ -36,6 +36,25 @@ class Losses(NamedTuple):
     copper_w: float
     friction_w: float
     ambient_c: float
+
+
+class Rates(NamedTuple):
+    """Of both bodies, times a tick: of the winding, of the case by the winding, and of the case."""
+
+    winding: float
+    into_case: float
+    of_case: float
+
+
+class Rise(NamedTuple):
+    """By how much both bodies warm [K]."""
+
+    winding_k: float
+    case_k: float
+
+
+#: Rates of both bodies, times a tick, up to which the series tells all bits.
+SHORT = 1e-3
 
 
 @compiled
@@ -80,30 +99,61 @@ def losses(
 def mean_square(start: float, mean: float, end: float) -> float:
     """Return the mean of the square of a parabola with these two ends and this mean."""
     rise, bend = end - start, 6.0 * (0.5 * (start + end) - mean)
-    return mean * mean + rise * rise / 12.0 + bend * bend / 180.0
+    return mean * mean + (15.0 * rise * rise + bend * bend) / 180.0
 
 
 @compiled
 def warmed(now: HeatState, lost: Losses, heat: Heat, step_s: float) -> HeatState:
-    """Return temperatures and thermal switch a tick later.
-
-    With A the matrix of the two equations, its eigenvalues m +- s, both real and below 0:
-    exp(A t) = exp(m t) (cosh(s t) 1 + sinh(s t)/s (A - m 1)).
-    """
-    a, b = heat.winding_to_case_w_k / heat.winding_j_k, heat.winding_to_case_w_k / heat.case_j_k
-    c = heat.case_to_ambient_w_k / heat.case_j_k
-    case_end = lost.ambient_c + (lost.copper_w + lost.friction_w) / heat.case_to_ambient_w_k
-    winding_end = case_end + lost.copper_w / heat.winding_to_case_w_k
-    mean, half = -0.5 * (a + b + c), 0.5 * (b + c - a)
-    s = math.sqrt(half * half + a * b)
-    slow, fast = math.exp((mean + s) * step_s), math.exp((mean - s) * step_s)
-    even, odd = 0.5 * (slow + fast), 0.5 * (slow - fast) / s
-    x, y = now.winding_c - winding_end, now.case_c - case_end
-    winding = winding_end + (even + odd * half) * x + odd * a * y
-    case = case_end + odd * b * x + (even - odd * half) * y
-    opened = now.opened
-    if heat.has_switch < 0.5 or winding <= heat.reset_c:
+    """Return temperatures and thermal switch a tick later."""
+    winding_k_j, case_k_j = step_s / heat.winding_j_k, step_s / heat.case_j_k
+    out = heat.winding_to_case_w_k * (now.winding_c - now.case_c)
+    leaving = heat.case_to_ambient_w_k * (now.case_c - lost.ambient_c)
+    winding_k, case_k = (lost.copper_w - out) * winding_k_j, (lost.friction_w + out - leaving) * case_k_j
+    a, b = heat.winding_to_case_w_k * winding_k_j, heat.winding_to_case_w_k * case_k_j
+    rates = Rates(a, b, b + heat.case_to_ambient_w_k * case_k_j)
+    rise = risen(Rise(winding_k, case_k), rates)
+    winding_c, opened = now.winding_c + rise.winding_k, now.opened
+    if heat.has_switch < 0.5 or winding_c <= heat.reset_c:
         opened = 0.0
-    elif winding >= heat.trip_c:
+    elif winding_c >= heat.trip_c:
         opened = 1.0
-    return HeatState(winding, case, opened)
+    return HeatState(winding_c, now.case_c + rise.case_k, opened)
+
+
+@compiled
+def risen(at_start: Rise, rates: Rates) -> Rise:
+    """Return by how much both bodies warm in a tick, from what it would be at the rates of its start.
+
+    With A the matrix of the two equations times the tick this is A^-1 (exp(A) - 1) = 1 + A/2 + A^2/6 + A^3/24 + ...;
+    the next term is less than a bit of it where the tick is as short beside the bodies as `SHORT` says.
+    """
+    if rates.winding + rates.of_case > SHORT:
+        return risen_in_long(at_start, rates)
+    rise = fed_back(at_start, at_start, rates, 0.25)
+    rise = fed_back(at_start, rise, rates, 1.0 / 3.0)
+    return fed_back(at_start, rise, rates, 0.5)
+
+
+@compiled
+def fed_back(at_start: Rise, rise: Rise, rates: Rates, part: float) -> Rise:
+    """Return `at_start` and that part of what the matrix makes of `rise`."""
+    winding_k = rates.winding * (rise.case_k - rise.winding_k)
+    case_k = rates.into_case * rise.winding_k - rates.of_case * rise.case_k
+    return Rise(at_start.winding_k + part * winding_k, at_start.case_k + part * case_k)
+
+
+@compiled_apart
+def risen_in_long(at_start: Rise, rates: Rates) -> Rise:
+    """Return the same by the eigenvalues m +- s of A, both real and below 0.
+
+    exp(A) = exp(m) (cosh(s) 1 + sinh(s)/s (A - m 1)).
+    """
+    a, b, c = rates.winding, rates.into_case, rates.of_case
+    scale = 1.0 / (a * (c - b))
+    x = -scale * (c * at_start.winding_k + a * at_start.case_k)
+    y = -scale * (b * at_start.winding_k + a * at_start.case_k)
+    mean, half = -0.5 * (a + c), 0.5 * (c - a)
+    s = math.sqrt(half * half + a * b)
+    slow, fast = math.exp(mean + s), math.exp(mean - s)
+    even, odd = 0.5 * (slow + fast), 0.5 * (slow - fast) / s
+    return Rise((even + odd * half - 1.0) * x + odd * a * y, odd * b * x + (even - odd * half - 1.0) * y)

@@ -49,15 +49,24 @@ def without_lost_blades(load: Load, condition: LinkageCondition) -> Load:
     return changed(load, BothBlades(left, right))
 
 
-@compiled_apart
+@compiled
 def without_lost_sides(whole: Resistance, crank: Crank, parameters: Parameters, inputs: Inputs) -> Resistance:
     """Return the load of the whole wiper without what arms and blades that are lost put on the crank."""
-    condition, first = parameters.linkage, channel.POINTS + 2 * int(parameters.load.points)
+    condition = parameters.linkage
+    if condition.left == WHOLE and condition.right == WHOLE:
+        return whole
+    return less_sides(whole, crank, condition, int(parameters.load.points), inputs.vehicle_speed_m_s)
+
+
+@compiled_apart
+def less_sides(whole: Resistance, crank: Crank, condition: LinkageCondition, points: int, air_m_s: float) -> Resistance:
+    """Return the same where a side is lost."""
+    first = channel.POINTS + 2 * points
     less = Resistance(0.0, 0.0, 0.0, 0.0)
     if condition.left != WHOLE:
-        less = carried(crank, first, inputs.vehicle_speed_m_s)
+        less = carried(crank, first, air_m_s)
     if condition.right != WHOLE:
-        right = carried(crank, first + channel.SIDE_CHANNELS, inputs.vehicle_speed_m_s)
+        right = carried(crank, first + channel.SIDE_CHANNELS, air_m_s)
         less = Resistance(less.inertia + right.inertia, less.bias + right.bias, 0.0, 0.0)
     return Resistance(max(0.0, whole.inertia - less.inertia), whole.bias - less.bias, whole.dry, whole.slope)
 

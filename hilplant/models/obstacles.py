@@ -44,12 +44,17 @@ class BothSides(NamedTuple):
     right: SideObstacles
 
 
-@compiled_apart
+@compiled
 def obstructed(free: Resistance, crank: Crank, parameters: Parameters) -> Resistance:
     """Return the load with what is in its way at this angle."""
-    of = parameters.obstacles
-    left = met(crank, channel.LEFT_ROCKER, parameters.left_arm.offset_rad, of.left)
-    right = met(crank, channel.RIGHT_ROCKER, parameters.right_arm.offset_rad, of.right)
+    return hindered(free, crank, parameters.obstacles, parameters.left_arm.offset_rad, parameters.right_arm.offset_rad)
+
+
+@compiled_apart
+def hindered(free: Resistance, crank: Crank, of: Obstacles, left_rad: float, right_rad: float) -> Resistance:
+    """Return the same, with the angles from the rockers to the arms."""
+    left = met(crank, channel.LEFT_ROCKER, left_rad, of.left)
+    right = met(crank, channel.RIGHT_ROCKER, right_rad, of.right)
     dry = free.dry + left.dry + right.dry
     away = abs(crank.angle_rad - of.jam_rad)
     if min(away, abs(TURN_RAD - away)) <= of.jam_half_rad:

@@ -6,7 +6,7 @@ from hilplant.jit import compiled
 from hilplant.models.armature import ArmatureMotion
 from hilplant.models.backlash import join, linkage_crank
 from hilplant.models.circuit import connect, next_phase
-from hilplant.models.guard import admit, hold_if_wrong
+from hilplant.models.guard import admit, admitted, hold_if_wrong
 from hilplant.models.linkage_faults import LINK_BROKEN, broken_at
 from hilplant.models.load import network_now, resist_as
 from hilplant.models.lookup import derivative, value, within_turn
@@ -15,11 +15,11 @@ from hilplant.models.park_switch import contact_now
 from hilplant.models.records import Parameters, State
 from hilplant.models.reduced import left_pressing, right_pressing
 from hilplant.models.relays import move_relays
-from hilplant.models.resistance import Crank, Resistance
+from hilplant.models.resistance import Crank
 from hilplant.models.row import unpack, write
 from hilplant.models.sensors import read_current, stick_contact
-from hilplant.models.shaft import Train, load_torque
-from hilplant.models.slow_states import Reached, as_it_is, slow_after
+from hilplant.models.shaft import Joint, Train, load_torque, start_of
+from hilplant.models.slow_states import Reached, as_it_is, nothing_slow, slow_after
 from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
 from hilplant.models.water import rain_signal, wetted
 from hilplant.signals import Inputs, Outputs
@@ -35,13 +35,12 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     Parameters
     ----------
     state, inputs, parameters
-        See :mod:`hilplant.models.records`.
+        See :mod:`hilplant.models.records`; the state is finite, see :func:`hilplant.models.guard.admitted`.
     tables
         Array [knots + 1, channels, 2] over the crank angle; see :mod:`hilplant.models.tables`.
 
     """
-    # 1 what is not finite stays outside; motor, blades and screen are as the slow states have made them
-    state, inputs = admit(state, inputs)
+    state, inputs = admit(state, inputs)  # 1 what is not finite stays outside; the plant is as slow states made it
     actual, angle = as_it_is(parameters, state), state.crank_angle_rad
     inputs, speed = wetted(inputs, actual, state.water), state.motor_speed_rad_s / actual.motor.gear_ratio
     # 2 park switch, relays, supply, wires and park circuit
@@ -55,14 +54,15 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
     train = Train(connection, tables, inputs, actual, load_mode, tangent)
     crank = linkage_crank(speed, state, actual, tables)
     load = resist_as(load_mode, tangent, crank, actual, inputs)
+    start = start_of(motion, load, train)
+    torque_n_m = load_torque(motion, load, start, train)
     # 4 motor and load together to the next tick
-    joint, play = join(motion, crank, load, train, state.play)
+    joint, play = join(Joint(motion, start, crank.angle_rad, actual.step_s), crank, load, train, state.play)
     after, memory = move(joint, load, train, state)
     seen = read_current(motion.current, angle * actual.motor.gear_ratio, state.noise, actual.sensors)
-    # 5 slow states
+    # 5 slow states; guard
     reached = within_turn(angle + after.turned / actual.motor.gear_ratio)
-    slow = slow_after(crank, Reached(motion, after, within_turn(reached + play.ahead_rad)), train, state, parameters)
-    # 6 guard
+    slow = slow_after(crank, Reached(motion, after, reached + play.ahead_rad), train, state, parameters)
     following = State(
         current_a=without_denormals(after.current),
         motor_speed_rad_s=without_denormals(after.speed),
@@ -83,8 +83,8 @@ def step(state: State, inputs: Inputs, parameters: Parameters, tables: Any) -> t
         wear=slow.wear,
         water=slow.water,
     )
-    outputs = measured(motion, crank, load, Seen(seen.current_a, contact.shown, memory.mode, state), train)
-    return hold_if_wrong(following, angle), outputs
+    outputs = measured(motion, crank, Seen(seen.current_a, contact.shown, memory.mode, torque_n_m, state), train)
+    return hold_if_wrong(following, angle, not nothing_slow(parameters)), outputs
 
 
 class Seen(NamedTuple):
@@ -93,11 +93,12 @@ class Seen(NamedTuple):
     current_a: float
     park_contact: float
     motor_mode: float
+    load_torque_n_m: float
     state: State
 
 
 @compiled
-def measured(motion: ArmatureMotion, crank: Crank, load: Resistance, seen: Seen, train: Train) -> Outputs:
+def measured(motion: ArmatureMotion, crank: Crank, seen: Seen, train: Train) -> Outputs:
     """Return what can be seen of the plant at this instant."""
     inputs, parameters, connection = train.inputs, train.parameters, train.connection
     tables, place = crank.tables, crank.place
@@ -118,7 +119,7 @@ def measured(motion: ArmatureMotion, crank: Crank, load: Resistance, seen: Seen,
         motor_speed_rad_s=motion.speed,
         crank_speed_rad_s=motion.speed / parameters.motor.gear_ratio,
         crank_angle_rad=seen.state.crank_angle_rad,
-        load_torque_n_m=load_torque(motion, load, train),
+        load_torque_n_m=seen.load_torque_n_m,
         park_contact=seen.park_contact,
         left_arm_rad=left_rocker + parameters.left_arm.offset_rad,
         right_arm_rad=right_rocker + parameters.right_arm.offset_rad,
@@ -156,7 +157,7 @@ def without_denormals(value: float) -> float:
 def tick(state_row: Any, input_row: Any, parameter_row: Any, tables: Any, output_row: Any) -> None:
     """Take one step on packed rows of floats; `state_row` moves on, `output_row` is filled. For the server."""
     parameters = unpack(Parameters, parameter_row)
-    state, outputs = step(unpack(State, state_row), unpack(Inputs, input_row), parameters, tables)
+    state, outputs = step(admitted(unpack(State, state_row)), unpack(Inputs, input_row), parameters, tables)
     write(state, state_row)
     write(outputs, output_row)
 
@@ -165,7 +166,7 @@ def tick(state_row: Any, input_row: Any, parameter_row: Any, tables: Any, output
 def simulate_rows(state_row: Any, input_rows: Any, parameter_row: Any, tables: Any, output_rows: Any) -> None:
     """Take one step for each row of inputs, and leave its outputs in the same row of `output_rows`."""
     parameters = unpack(Parameters, parameter_row)
-    state = unpack(State, state_row)
+    state = admitted(unpack(State, state_row))
     for index in range(input_rows.shape[0]):
         state, outputs = step(state, unpack(Inputs, input_rows[index]), parameters, tables)
         write(outputs, output_rows[index])

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from hilplant.jit import compiled
 from hilplant.models.armature import ArmatureDrive, ArmatureMotion, acceleration
 from hilplant.models.circuit import Connection
-from hilplant.models.gear import held_torque, through_gear
+from hilplant.models.gear import held_torque, through_gear, unloaded
 from hilplant.models.load import by_speed, resist_as, without_inertia
 from hilplant.models.lookup import find, within_turn
 from hilplant.models.motor import Hold, advance, direction_of, slide, stand, stick, within_half_period
@@ -51,10 +51,22 @@ class Ahead(NamedTuple):
     half_way: ArmatureMotion
 
 
+class Acting(NamedTuple):
+    """What acts on the armature at an instant, and where it turns: 0 while it sticks.
+
+    While it stands, `drive` is what moves the current, and `hold` is that from which it breaks away.
+    """
+
+    drive: ArmatureDrive
+    hold: Hold
+    direction: float
+
+
 class Joint(NamedTuple):
-    """From where motor and linkage move as one body in a tick: the motion then, the crank's angle, and for how long."""
+    """From where motor and linkage are one body in a tick: motion, what acts, the crank's angle, and for how long."""
 
     motion: ArmatureMotion
+    start: Acting
     crank_angle_rad: float
     left_s: float
 
@@ -66,31 +78,34 @@ def drive_at(motion: ArmatureMotion, direction: float, load: Resistance, train: 
 
 
 @compiled
-def load_torque(motion: ArmatureMotion, load: Resistance, train: Train) -> float:
+def start_of(motion: ArmatureMotion, load: Resistance, train: Train) -> Acting:
+    """Return what acts at an instant."""
+    motor = train.parameters.motor
+    if motion.speed != 0.0:
+        direction = math.copysign(1.0, motion.speed)
+        return Acting(drive_at(motion, direction, load, train), Hold(0.0, 0.0), direction)
+    drive, hold = unloaded(train.connection, motor), hold_of(load, motor)
+    return Acting(drive, hold, direction_of(motion, drive, hold))
+
+
+@compiled
+def load_torque(motion: ArmatureMotion, load: Resistance, start: Acting, train: Train) -> float:
     """Return the torque at the crank [N m], inertia and brake included, positive when it opposes motion.
 
     At rest it is what the motor presses with through the gear onto the crank, which what holds the crank opposes: the
     motor's torque less its own dry friction, which holds first.
     """
-    direction, ratio = math.copysign(1.0, motion.speed), train.parameters.motor.gear_ratio
-    if motion.speed == 0.0:
-        direction, pressing = at_rest(motion, load, train)
-        if direction == 0.0:
-            return pressing
-    torque = direction * load.bias + load.dry + load.slope * abs(motion.speed) / ratio
+    motor, drive, direction = train.parameters.motor, start.drive, start.direction
+    if direction == 0.0:
+        pressing = abs(drive.constant * motion.current + drive.push) - motor.coulomb_torque_n_m
+        return max(0.0, pressing) * motor.gear_ratio * motor.gear_efficiency
+    torque = direction * load.bias + load.dry + load.slope * abs(motion.speed) / motor.gear_ratio
     if load.inertia != 0.0:
-        drive = drive_at(motion, direction, load, train)
-        torque += load.inertia * direction * acceleration(motion, drive, direction * drive.dry_torque) / ratio
+        if motion.speed == 0.0:
+            drive = drive_at(motion, direction, load, train)
+        pull = load.inertia * direction * acceleration(motion, drive, direction * drive.dry_torque)
+        torque += pull / motor.gear_ratio
     return torque
-
-
-@compiled
-def at_rest(motion: ArmatureMotion, load: Resistance, train: Train) -> tuple[float, float]:
-    """Return the direction in which a standing shaft breaks away, or 0 and the torque [N m] that it presses with."""
-    motor, drive = train.parameters.motor, drive_at(motion, 1.0, load, train)
-    pressing = abs(drive.constant * motion.current + drive.push) - motor.coulomb_torque_n_m
-    direction = direction_of(motion, drive, hold_of(load, motor))
-    return direction, max(0.0, pressing) * motor.gear_ratio * motor.gear_efficiency
 
 
 @compiled
@@ -118,15 +133,16 @@ def turn_in_stretches(joint: Joint, load: Resistance, train: Train) -> ArmatureM
 
     After `STRETCHES` stretches without an end the shaft stands still for what is left of the step.
     """
-    motion, begun = joint.motion, joint.motion.turned
-    left, ratio = joint.left_s, train.parameters.motor.gear_ratio
+    motion, drive, begun = joint.motion, joint.start.drive, joint.motion.turned
+    left, ratio, direction = joint.left_s, train.parameters.motor.gear_ratio, 0.0
     if left <= 0.0:
         return motion
-    drive = drive_at(motion, math.copysign(1.0, motion.speed), load, train)
-    direction = 0.0
     if motion.speed == 0.0:
-        motion, taken, direction = let_go(motion, drive, load, left, train)
+        motion, taken, direction = let_go(motion, drive, joint.start.hold, left)
         left -= taken
+        if left <= 0.0:
+            return motion
+        drive = drive_at(joint.motion, 1.0, load, train)
     for _ in range(STRETCHES):
         if left <= 0.0:
             return motion
@@ -137,7 +153,7 @@ def turn_in_stretches(joint: Joint, load: Resistance, train: Train) -> ArmatureM
         crank = Crank(train.tables, find(train.tables, angle), angle, ahead.half_way.speed / ratio)
         load = resist_as(train.load_mode, train.tangent, crank, train.parameters, train.inputs)
         if direction == 0.0:
-            motion, taken, direction = let_go(motion, drive, load, left, train)
+            motion, taken, direction = let_go(motion, drive, hold_of(load, train.parameters.motor), left)
         else:
             drive = drive_at(ahead.half_way, direction, load, train)
             motion, taken = slide(motion, drive, direction, within_half_period(ahead.stretch, drive))
@@ -148,10 +164,9 @@ def turn_in_stretches(joint: Joint, load: Resistance, train: Train) -> ArmatureM
 
 @compiled
 def let_go(
-    motion: ArmatureMotion, drive: ArmatureDrive, load: Resistance, left: float, train: Train
+    motion: ArmatureMotion, drive: ArmatureDrive, hold: Hold, left: float
 ) -> tuple[ArmatureMotion, float, float]:
     """Stand still until the motor breaks away or the time is over; return motion, time taken, and direction or 0."""
-    hold = hold_of(load, train.parameters.motor)
     direction = direction_of(motion, drive, hold)
     if direction != 0.0:
         return motion, 0.0, direction

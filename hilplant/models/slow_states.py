@@ -6,7 +6,7 @@ from hilplant.jit import compiled
 from hilplant.models.armature import ArmatureMotion
 from hilplant.models.heat import Brushes, heated, losses, warmed
 from hilplant.models.linkage_faults import broken_at, without_lost_blades
-from hilplant.models.lookup import find
+from hilplant.models.lookup import find, within_turn
 from hilplant.models.mechanical_records import IceState, LinkageState, Obstacles
 from hilplant.models.obstacles import BothSides, Frozen, ice_after, with_ice_left
 from hilplant.models.records import Blade, Brush, Load, Motor, Parameters, ParkSwitch, State
@@ -14,7 +14,7 @@ from hilplant.models.resistance import Crank
 from hilplant.models.row import changed
 from hilplant.models.shaft import Train
 from hilplant.models.slow_records import HeatState, WaterState, WearState
-from hilplant.models.water import film_after
+from hilplant.models.water import PASS_RAD, film_after, film_gain_mm_s
 from hilplant.models.wear import WornBlades, WornCam, worn_load, worn_motor, worn_switch
 from hilplant.units import TURN_RAD
 
@@ -51,7 +51,7 @@ class SlowStates(NamedTuple):
 
 
 class Reached(NamedTuple):
-    """Where a tick has led: the motor's motion at both ends, and where the crank of the linkage is then [rad]."""
+    """Where a tick has led: the motor's motion at both ends, and the angle of the linkage's crank then [rad]."""
 
     before: ArmatureMotion
     after: ArmatureMotion
@@ -132,12 +132,16 @@ def slow_after(crank: Crank, reached: Reached, train: Train, state: State, told:
         lost = losses(reached.before, reached.after, train.connection, parameters, inputs.ambient_temperature_c)
         heat = warmed(heat, lost, parameters.heat, parameters.step_s)
     if parameters.obstacles.altered > 0.5:
-        there = Crank(crank.tables, find(crank.tables, reached.linkage_rad), reached.linkage_rad, crank.speed_rad_s)
+        angle = within_turn(reached.linkage_rad)
+        there = Crank(crank.tables, find(crank.tables, angle), angle, crank.speed_rad_s)
         ice = ice_after(state.ice, told.obstacles, crank, there)
     if parameters.linkage.altered > 0.5:
         linkage = broken_at(crank, parameters.linkage, state.linkage)
     if parameters.wear.altered > 0.5:
         wear = WearState(wear.wipes + turned_rad / TURN_RAD)
     if parameters.water.altered > 0.5:
-        water = film_after(water, inputs, parameters, turned_rad)
+        gain = film_gain_mm_s(inputs, parameters.water)
+        if water.film_mm > 0.0 or gain > 0.0:
+            thinned = parameters.water.runoff_per_s * parameters.step_s + parameters.water.wiped * turned_rad / PASS_RAD
+            water = film_after(water, gain * parameters.step_s, thinned)
     return SlowStates(heat, ice, linkage, wear, water)

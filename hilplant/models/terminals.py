@@ -44,6 +44,8 @@ def wired(share: float, driven: float, behind_ohm: float, load_s: float, wire: W
     """
     series = behind_ohm + wire.resistance_ohm
     connected = driven > 0.5 and wire.opened < 0.5
+    if connected and wire.to_supply_s + wire.to_ground_s == 0.0:  # as below, without its quotients
+        return Port(share, series, load_s, 1.0)
     if connected and series == 0.0:
         away = 1.0 - share
         return Port(share, 0.0, load_s + wire.to_ground_s * share * share + wire.to_supply_s * away * away, 1.0)

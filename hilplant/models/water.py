@@ -15,7 +15,7 @@ The rain sensor shows 1 - exp(-h/s): light that the glass reflects inside is los
 import math
 from typing import NamedTuple
 
-from hilplant.jit import compiled, compiled_apart
+from hilplant.jit import compiled
 from hilplant.models.friction import TACKY
 from hilplant.models.records import Parameters
 from hilplant.models.row import changed
@@ -24,6 +24,8 @@ from hilplant.signals import Inputs
 from hilplant.units import TURN_RAD
 
 SECONDS_PER_HOUR = 3600.0
+#: Turn of the crank in which each blade passes once over the screen.
+PASS_RAD = 0.5 * TURN_RAD
 
 
 class WetScreen(NamedTuple):
@@ -50,20 +52,25 @@ def wetness(film_mm: float, water: Water) -> float:
     return min(1.0, TACKY + (1.0 - TACKY) * (film_mm - water.tacky_mm) / (water.wet_mm - water.tacky_mm))
 
 
-@compiled_apart
-def film_after(now: WaterState, inputs: Inputs, parameters: Parameters, turned_rad: float) -> WaterState:
-    """Return the film a tick later, in which the crank has turned by `turned_rad`, not negative."""
-    water, step_s = parameters.water, parameters.step_s
+@compiled
+def film_gain_mm_s(inputs: Inputs, water: Water) -> float:
+    """Return what rain and washer bring, less what evaporates [mm/s]."""
     caught = inputs.rain_mm_h / SECONDS_PER_HOUR * (water.catch + water.catch_s_m * inputs.vehicle_speed_m_s)
     gain = caught - water.evaporation_mm_s
-    if inputs.washer_pump > 0.5:
-        gain += water.washer_mm_s
-    thinned = water.runoff_per_s * step_s + water.wiped * 2.0 * turned_rad / TURN_RAD
-    share = -math.expm1(-thinned) / thinned if thinned > 0.0 else 1.0
-    return WaterState(max(0.0, now.film_mm * math.exp(-thinned) + gain * step_s * share))
+    return gain + water.washer_mm_s if inputs.washer_pump > 0.5 else gain
+
+
+@compiled
+def film_after(now: WaterState, gained_mm: float, thinned: float) -> WaterState:
+    """Return the film a tick later, in which it gains `gained_mm` and loses the part 1 - exp(-`thinned`) of itself."""
+    lost = -math.expm1(-thinned)
+    share = lost / thinned if thinned > 0.0 else 1.0
+    return WaterState(max(0.0, now.film_mm * (1.0 - lost) + gained_mm * share))
 
 
 @compiled
 def rain_signal(now: WaterState, water: Water) -> float:
     """Return what the rain sensor shows, 0 dry to 1; 0 where water is not modelled."""
-    return -math.expm1(-now.film_mm / water.sensor_mm) if water.altered > 0.5 else 0.0
+    if water.altered < 0.5 or now.film_mm == 0.0:
+        return 0.0
+    return -math.expm1(-now.film_mm / water.sensor_mm)

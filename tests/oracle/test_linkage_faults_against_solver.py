@@ -181,8 +181,8 @@ def test_play_moves_as_two_bodies_that_meet_and_part_at_events() -> None:
     arm = np.array([DAMPED.left.rocker(angle)[0] for angle in truth[:, 3]]) + 0.3
     arm_error = 100.0 * np.sqrt(np.mean((shown(outputs, "left_arm_rad") - arm) ** 2)) / np.ptp(arm)
     print(f"\nplay of 6 deg: current, speed, angle {errors} %, arm {arm_error:.2g} %; without it {without} %")
-    assert max(*errors, arm_error) < 0.5 * max(without)
-    assert max(*errors, arm_error) < 2.0
+    assert max(*errors, arm_error) < 0.1
+    assert max(without) > 3.0
 
 
 @pytest.mark.parametrize("scenario", ["start and run", "reverse", "park"])

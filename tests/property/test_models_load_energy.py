@@ -12,7 +12,7 @@ from hilplant.models.load import resist
 from hilplant.models.lookup import find
 from hilplant.models.records import Arm, Blade, Brush, Friction, Load, Motor, Parameters, ParkSwitch
 from hilplant.models.resistance import Crank
-from hilplant.models.shaft import Joint, Train, turn
+from hilplant.models.shaft import Joint, Train, start_of, turn
 from hilplant.models.terminals import Shaft
 from hilplant.models.torque_network import NO_TANGENT
 from hilplant.models.wiring import GROUND, NOTHING, SUPPLY, Leads
@@ -42,7 +42,7 @@ def train_of(motor: Motor, load: Load, inputs: Inputs, connection: Connection, s
 def turned(motion: ArmatureMotion, angle: float, train: Train) -> ArmatureMotion:
     crank = Crank(TABLES, find(TABLES, angle), angle, motion.speed / RATIO)
     load = resist(crank, train.parameters, train.inputs)
-    return turn(Joint(motion, angle, train.parameters.step_s), load, train)
+    return turn(Joint(motion, start_of(motion, load, train), angle, train.parameters.step_s), load, train)
 
 
 def energy(angle: float, motion: ArmatureMotion, motor: Motor) -> float:
