@@ -82,6 +82,17 @@ class Bench:
         identifiers = [(message.identifier, message.extended) for message in own.stalk]
         return frozenset(identifiers + [(message.identifier, message.extended) for message in own.status])
 
+    @property
+    def pace(self) -> float:
+        """Seconds of the plant in a second of the real clock."""
+        return self.loop.pace
+
+    def at(self, channel: str | None = None, pace: float | None = None) -> "Bench":
+        """Return this bench on another channel of its interface, at another pace; None leaves what there is."""
+        interface = self.interface if channel is None else {**self.interface, "channel": channel}
+        loop = self.loop if pace is None else self.loop.model_copy(update={"pace": pace})
+        return replace(self, interface=interface, loop=loop)
+
     def ecu_side(self) -> EcuSide:
         """Return the same messages as the stand-in ECU sees them: it sends what the plant receives."""
         periods_ns = {message.name: message.period_ns for message in self.send}

@@ -18,6 +18,7 @@ from hilplant.units import TURN_RAD
 
 Pauses = Annotated[tuple[Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]], Field(strict=False)]
 Whole = Annotated[int, Field(ge=0)]
+Pace = Annotated[float, Field(ge=0.001, le=1.0)]
 
 #: The longest step [s] at which the plant keeps to 0.5 % of the range from any start; beyond it a start may fail.
 LONGEST_STEP_S = 0.02
@@ -44,6 +45,9 @@ class LoopSettings(Checked):
     )
     lost_time: Annotated[float, Field(gt=0.0, le=1.0)] = Field(
         default=0.2, description="share of a second that may be lost before the loop counts as behind: exit code 1"
+    )
+    pace: Pace = Field(
+        default=1.0, description="seconds of the plant in a second of the clock; below 1 where a machine is slow"
     )
     priority: Annotated[int, Field(ge=1, le=99)] = Field(
         default=80, description="SCHED_FIFO priority, where it is permitted"

@@ -20,6 +20,12 @@ Budget = Annotated[
     typer.Option(min=1, help="processor time a call of your own controller may take; half a period if left out"),
 ]
 Channel = Annotated[str | None, typer.Option(help="use this channel instead of the bench's, such as can0")]
+Pace = Annotated[
+    float | None,
+    typer.Option(
+        min=0.001, max=1.0, help="seconds of the plant in a second of the clock, such as 0.1 on a slow machine"
+    ),
+]
 
 DataNames = Annotated[
     list[str],

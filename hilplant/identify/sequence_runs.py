@@ -84,11 +84,11 @@ def play_on_bus(
     from hilplant.bus.link import LinkSettings
     from hilplant.bus.node import Node
     from hilplant.bus.transport import open_transport
-    from hilplant.runtime.clock import WallClock
+    from hilplant.runtime.clock import clock_at
     from hilplant.runtime.server import StopRequest, ended_by_signals
     from hilplant.signals import ECU_RX, ECU_TX
 
-    bench = load_bench(bench_name)
+    bench = load_bench(bench_name).at(channel)
     places = {signal.name: index for index, signal in enumerate(ECU_TX)}
     side = bench.ecu_side()
     park = next(index for index, signal in enumerate(ECU_RX) if signal.name == "park_contact")
@@ -96,15 +96,14 @@ def play_on_bus(
     names = ("relay_on", "relay_fast", "supply_v")
     _refuse_unmapped(bench_name, bool(heard), [n for n in names if not any(places[n] in m.sources for m in side.send)])
     values = [signal.default for signal in ECU_TX]
-    interface = bench.interface if channel is None else {**bench.interface, "channel": channel}
     received = [math.nan] * len(ECU_RX)
     wanted = {places[name] for name in names}
     sent = [message for message in side.send if wanted & set(message.sources)]
-    transport = open_transport(interface)
+    transport = open_transport(bench.interface)
     node, stop = Node(heard, sent, transport, LinkSettings(), received), StopRequest()
     with ended_by_signals(stop):
         try:
-            drive(Rig(node, values, [places[name] for name in names], park), stages, WallClock(), stop, tell)
+            drive(Rig(node, values, [places[name] for name in names], park), stages, clock_at(bench.pace), stop, tell)
         finally:
             for place in (places["relay_on"], places["relay_fast"]):
                 values[place] = 0.0

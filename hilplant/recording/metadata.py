@@ -40,6 +40,7 @@ class RunDescription:
     part: int  # counted from 1
     first_tick: int  # of this part; `state_row` is the state before it
     first_ns: int  # when that tick was due, from the loop's start
+    pace: float = 1.0  # seconds of the plant in a second of the clock
 
 
 def current_build() -> dict[str, str]:
@@ -62,6 +63,7 @@ def describe(bench: RecordedBench, start_utc: datetime) -> dict[str, str]:
         "format": FORMAT_VERSION,
         "name": bench.name,
         "step_ns": str(bench.step_ns),
+        "pace": str(bench.pace),
         "parameter_row": _encode(bench.parameter_row),
         "tables": _encode(bench.tables),
         "state_row": _encode(bench.state_row),
@@ -133,6 +135,7 @@ def parse(metadata: dict[str, str]) -> RunDescription:
         part=int(metadata["part"]),
         first_tick=int(metadata["first_tick"]),
         first_ns=int(metadata["first_ns"]),
+        pace=float(metadata.get("pace", "1")),
     )
 
 

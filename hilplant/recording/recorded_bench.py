@@ -18,6 +18,10 @@ class RecordedBench(Protocol):
         """Length of a tick."""
 
     @property
+    def pace(self) -> float:
+        """Seconds of the plant in a second of the clock."""
+
+    @property
     def parameter_row(self) -> Floats:
         """Packed parameters."""
 

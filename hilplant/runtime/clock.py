@@ -1,5 +1,6 @@
 """The clocks: the one file of the runtime that knows the wall clock, and the virtual clock that replaces it."""
 
+import math
 import time
 from itertools import pairwise
 from typing import Protocol
@@ -54,6 +55,35 @@ class WallClock:
         remaining_ns = deadline_ns - time.monotonic_ns()
         if remaining_ns > 0:
             time.sleep(remaining_ns * 1e-9)
+
+    def monotonic_ns(self, time_ns: int) -> int:
+        """Return when the machine's monotonic clock shows that this one shows `time_ns`."""
+        return time_ns
+
+
+class PacedClock(WallClock):
+    """The machine's monotonic clock slowed down: of each of its seconds, `pace` seconds pass here."""
+
+    def __init__(self, pace: float) -> None:
+        self._pace = pace
+        self._origin_ns = time.monotonic_ns()
+
+    def now_ns(self) -> int:
+        """Return the slowed time."""
+        return self._origin_ns + int((time.monotonic_ns() - self._origin_ns) * self._pace)
+
+    def sleep_until_ns(self, deadline_ns: int) -> None:
+        """Sleep until the slowed time is there."""
+        super().sleep_until_ns(self.monotonic_ns(deadline_ns))
+
+    def monotonic_ns(self, time_ns: int) -> int:
+        """Return when the machine's clock shows that this one shows `time_ns`."""
+        return self._origin_ns + math.ceil((time_ns - self._origin_ns) / self._pace)
+
+
+def clock_at(pace: float) -> WallClock:
+    """Return the machine's clock at a pace: a plant's second takes 1 / `pace` of the machine's."""
+    return WallClock() if pace == 1.0 else PacedClock(pace)
 
 
 class VirtualClock:

@@ -11,7 +11,7 @@ from hilplant.bus.link import LinkSettings
 from hilplant.bus.node import Node
 from hilplant.bus.transport import Transport, open_transport
 from hilplant.faults.acting import ActingFaults
-from hilplant.runtime.clock import Clock, WallClock
+from hilplant.runtime.clock import Clock, WallClock, clock_at
 from hilplant.runtime.loop import Late, Loop, PlantRows
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.scheduling import Privilege, real_time
@@ -73,6 +73,10 @@ class ServedBench(PlantRows, Protocol):
     @property
     def sources(self) -> Mapping[str, str]:
         """Texts of the bench's files, the database among them."""
+
+    @property
+    def pace(self) -> float:
+        """Seconds of the plant in a second of the clock."""
 
     @property
     def loop(self) -> ServedLoop:
@@ -166,7 +170,7 @@ def serve(  # noqa: PLR0913, PLR0917
     on_start: Callable[[list[Privilege]], None] | None = None,
     prepare: Callable[[Loop], None] | None = None,
 ) -> Summary:
-    """Run the bench on its interface on the wall clock; returns when the time is up, a signal came or `stop` asks.
+    """Run the bench on its interface on the clock, at its pace; returns after `seconds` of it, a signal, or `stop`.
 
     With a `ring` the loop takes the commands of its mailbox. `prepare` gets the loop before its first tick, for a
     controller inside it.
@@ -179,16 +183,16 @@ def serve(  # noqa: PLR0913, PLR0917
     """
     stop = stop or StopRequest()
     ticks = None if seconds is None else round(seconds * SECOND_NS / bench.step_ns)
-    transport = open_transport(bench.interface)
+    transport, clock = open_transport(bench.interface), clock_at(bench.pace)
     try:
         acting = ActingFaults(bench, transport)
-        loop = build_loop(bench, acting.transport if ring is not None else transport, WallClock(), ring)
+        loop = build_loop(bench, acting.transport if ring is not None else transport, clock, ring)
         if ring is not None:
             loop.listen(ring.mailbox, ring.events.append, acting)
         if prepare is not None:
             prepare(loop)
         loop.warm_up()
-        watchdog = Watchdog()
+        watchdog = Watchdog(bench.pace)
         with ended_by_signals(stop), real_time(bench.loop.priority, bench.loop.cpu) as privileges:
             if on_start is not None:
                 on_start(privileges)
@@ -198,10 +202,10 @@ def serve(  # noqa: PLR0913, PLR0917
             watchdog.stopping()
     finally:
         transport.close()
-    return _summary(loop, privileges)
+    return _summary(loop, clock, privileges)
 
 
-def _summary(loop: Loop, privileges: list[Privilege]) -> Summary:
+def _summary(loop: Loop, clock: WallClock, privileges: list[Privilege]) -> Summary:
     latency = loop.latency
     return Summary(
         ticks=loop.progress.ticks,
@@ -213,7 +217,7 @@ def _summary(loop: Loop, privileges: list[Privilege]) -> Summary:
         stopped_by_overrun=loop.progress.stopped_by_overrun,
         fell_behind=loop.lost_time.exceeded,
         controller_stopped=loop.control_stopped,
-        first_tick_monotonic_ns=loop.progress.first_tick_ns,
+        first_tick_monotonic_ns=clock.monotonic_ns(loop.progress.first_tick_ns),
         counts=loop.counts(),
         out_of_range=loop.rejected(),
         privileges=privileges,

@@ -57,7 +57,7 @@ class ClockedBench(KeptRun):
     def __init__(self, bench: Bench, run: RunFile, channel: str, stand_in: bool) -> None:
         super().__init__(bench)
         self._begun = description_now(bench)
-        self._interface, self._clock = {**bench.interface, "channel": channel}, WallClock()
+        self._interface, self._clock = bench.at(channel).interface, WallClock()
         self._open, self.bus = ExitStack(), self
         self._channel = self._open.enter_context(RunChannel(run))
         self._follower = self._open.enter_context(contextlib.closing(Follower(run.ring, history=True)))

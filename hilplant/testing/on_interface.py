@@ -23,7 +23,7 @@ from hilplant.ecu.stalk_sender import StalkSender
 from hilplant.ecu.vocabulary import Stalk
 from hilplant.failure import Failure
 from hilplant.recording.reader import read_recording
-from hilplant.runtime.clock import Clock, WallClock
+from hilplant.runtime.clock import Clock, WallClock, clock_at
 from hilplant.runtime.commands import START
 from hilplant.runtime.follower import Follower
 from hilplant.runtime.row import ROW_WIDTH
@@ -55,26 +55,31 @@ class Actor(Protocol):
 def run_on_interface(
     scenario: Scenario, bench: Bench, channel: str, stand_in: bool = True, bench_name: str | None = None
 ) -> ScenarioTest:
-    """Run a scenario on a channel of the bench's interface, and judge its recording.
+    """Run a scenario on a channel of the bench's interface, at the bench's pace, and judge its recording.
 
     With `stand_in` the stand-in ECU joins from here; else this end moves the stalk, as the bench's stalk message.
 
     Raises
     ------
     Failure
-        Where the interface cannot be opened, the bench has no such signals, or the server does not begin.
+        Where the interface cannot be opened, the bench has no such signals, or the server does not begin; and at
+        another pace than 1 without the stand-in.
 
     """
+    bench = bench.at(channel)
+    if not stand_in and bench.pace != 1.0:
+        raise Failure(f"{bench.name}: pace {bench.pace:g} is for the stand-in ECU; an external ECU keeps its own time")
     database = database_signals(bench.sources, protections_of(bench))
     expectations = expected(scenario, database, bench.step_ns)
     folder = tempfile.TemporaryDirectory(prefix="hilplant-test-")
     recording = Path(folder.name) / "run.hilrec"
-    transport = open_transport({**bench.interface, "channel": channel})
-    command = server_command(scenario, channel, bench_name, recording)
+    transport = open_transport(bench.interface)
+    command = server_command(scenario, bench, bench_name, recording)
     with contextlib.closing(transport), serving(command, str(scenario.path), recording.exists) as process:
         acting = _Acting(scenario, bench, _actor(scenario, bench, (transport, stand_in)))
         late = acting.until_it_ends(process)
     options = (f" --bench {bench_name}" if bench_name else "") + ("" if stand_in else " --ecu external")
+    options += "" if bench.pace == 1.0 else f" --pace {bench.pace:g}"
     rerun = f"hilplant test {scenario.path} --on {channel}{options}"
     if process.returncode not in _ENDS:
         nothing = Evidence(bench.step_ns, np.zeros((0, ROW_WIDTH)), np.zeros(0, np.int64), ())
@@ -92,10 +97,11 @@ def run_on_interface(
     return replace(done, record=record)
 
 
-def server_command(scenario: Scenario, channel: str, bench_name: str | None, recording: Path) -> list[str]:
-    """Return the command line of the server that plays a scenario."""
+def server_command(scenario: Scenario, bench: Bench, bench_name: str | None, recording: Path) -> list[str]:
+    """Return the command line of the server that plays a scenario on the bench's channel, at its pace."""
     command = [sys.executable, "-m", "hilplant", "run", bench_name or scenario.bench or "default"]
-    command += ["--channel", channel, "--scenario", str(scenario.path), "--record", str(recording)]
+    command += ["--channel", bench.interface["channel"], "--pace", str(bench.pace)]
+    command += ["--scenario", str(scenario.path), "--record", str(recording)]
     return [*command, "--no-channel", "--no-verdicts"]
 
 
@@ -127,31 +133,31 @@ class _Acting:
     scenario: Scenario
     bench: Bench
     actor: Actor | None
-    clock: Clock = field(default_factory=WallClock)
     start_ns: int | None = None
     late: list[int] = field(default_factory=list)
 
     def until_it_ends(self, process: subprocess.Popen[bytes]) -> list[int]:
         """Act until the loop has ended or should have; returns the steps that are unfit because this end came late."""
-        run = run_of(process, self.clock)
+        run = run_of(process, WallClock())
         if run is None:
             return []
+        clock, pace = clock_at(self.bench.pace), self.bench.pace
         follower = Follower(run.ring, history=True)
         period_ns, acted_ns = round(self.bench.ecu.period_ms * MILLISECOND_NS), 0
-        limit_ns = self.clock.now_ns() + round(_BEGIN_S * SECOND_NS)
-        longest_s = self.scenario.seconds + self.scenario.start_within + _LONGER_S
+        limit_ns = clock.now_ns() + round(_BEGIN_S * pace * SECOND_NS)
+        longest_s = self.scenario.seconds + self.scenario.start_within + _LONGER_S * pace
         with contextlib.closing(follower):
-            while not follower.ended and process.poll() is None and self.clock.now_ns() < limit_ns:
+            while not follower.ended and process.poll() is None and clock.now_ns() < limit_ns:
                 now_ns = int(follower.latest()[1])
                 if now_ns and not acted_ns:
-                    limit_ns = self.clock.now_ns() + round(longest_s * SECOND_NS)
+                    limit_ns = clock.now_ns() + round(longest_s * SECOND_NS)
                 for event in follower.events().records:
                     if event["kind"] == START and self.start_ns is None:
                         self.start_ns = int(event["time_ns"])
                 if now_ns >= acted_ns + period_ns:
                     self._act(now_ns, acted_ns)
                     acted_ns = now_ns
-                self.clock.sleep_until_ns(self.clock.now_ns() + _LOOK_NS)
+                clock.sleep_until_ns(clock.now_ns() + _LOOK_NS)
         return self.late
 
     def _act(self, now_ns: int, acted_ns: int) -> None:

@@ -46,9 +46,14 @@ def _test(number: int, test: ScenarioTest) -> dict[str, Any]:
         "test": test,
         "hash": hashlib.sha256(test.scenario.text.encode()).hexdigest()[:16],
         "stimuli": stimuli,
-        "expectations": [_expectation(test, each) for each in test.judged],
+        "expectations": drawn_expectations(test) if test.drawn is None else test.drawn,
         "passed": sum(each.judgement.ruling == "pass" for each in test.judged),
     }
+
+
+def drawn_expectations(test: ScenarioTest) -> list[dict[str, Any]]:
+    """Return what the page shows of each expectation, drawn."""
+    return [_expectation(test, each) for each in test.judged]
 
 
 def _moved(move: Any) -> str:

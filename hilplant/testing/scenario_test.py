@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from hilplant.bench import Bench, load_bench
 from hilplant.ecu.loop_controller import Inside, seated
@@ -42,7 +43,8 @@ class ScenarioTest:
     """A scenario that was run, with its evidence, and what came of each expectation.
 
     `rerun` is the command line that does it again; `record` writes the run to a file where it is not from one. `faults`
-    are the times at which faults came and went, by their names.
+    are the times at which faults came and went, by their names; `drawn` are the expectations as a report shows them,
+    where they were drawn in another process and the evidence has stayed there.
     """
 
     scenario: Scenario
@@ -54,6 +56,7 @@ class ScenarioTest:
     rerun: str
     record: Callable[[Path], None] | None = None
     faults: Mapping[str, float] = field(default_factory=dict)
+    drawn: Sequence[Mapping[str, Any]] | None = None
 
     @property
     def name(self) -> str:

@@ -18,6 +18,8 @@ from hilplant.testing.scenario_test import RULINGS, ScenarioTest, run_virtually
 from hilplant.testing.virtual_bench import VirtualBench
 
 DEFAULT_BENCH = "default"
+#: A test that takes more than this part of a process's share is a long one.
+_LONG = 10
 
 
 @dataclass
@@ -57,13 +59,16 @@ def _shipped_scenario(name: str) -> Path | None:
 class Where:
     """Where scenarios run: on a `channel` of the bench's interface, None for virtual time; in how many processes.
 
-    In virtual time a velocity controller may be inside the loop.
+    In virtual time a velocity controller may be inside the loop; on a channel the real clock may have another `pace`
+    than the bench's. `drawn` says that a report of the tests is wanted.
     """
 
     channel: str | None = None
     stand_in: bool = True
     jobs: int | None = None
     inside: Inside | None = None
+    pace: float | None = None
+    drawn: bool = False
 
 
 def run_tests(
@@ -75,12 +80,13 @@ def run_tests(
     for scenario in scenarios:
         if not scenario.expect:
             raise Failure(f"{scenario.path}: expects nothing, so that it tests nothing; give it an `expect` section")
+    used = [benches.named(bench_name or each.bench or DEFAULT_BENCH).at(pace=where.pace) for each in scenarios]
     orders = [
-        _Order(each, benches.named(bench_name or each.bench or DEFAULT_BENCH), where.stand_in, bench_name, where.inside)
-        for each in scenarios
+        _Order(scenario, bench, where.stand_in, bench_name, where.inside)
+        for scenario, bench in zip(scenarios, used, strict=True)
     ]
     done = []
-    for test in _on_interface(orders, where.channel) if where.channel else _results(orders, benches, where.jobs):
+    for test in _on_interface(orders, where.channel) if where.channel else _results(orders, benches, where):
         done.append(test)
         tell(test)
     return done
@@ -108,10 +114,13 @@ def _on_interface(orders: list[_Order], channel: str) -> Iterator[ScenarioTest]:
         yield run_on_interface(order.scenario, order.bench, channel, order.stand_in, order.bench_name)
 
 
-def _results(orders: list[_Order], benches: Benches, jobs: int | None) -> Iterator[ScenarioTest]:
-    """Run all, in their order; on several CPUs where the system can copy a process that has compiled everything."""
+def _results(orders: list[_Order], benches: Benches, where: Where) -> Iterator[ScenarioTest]:
+    """Run all, and give them in their order; on several CPUs where the system can copy a process that is compiled.
+
+    The long ones begin first: one that began last would keep all but one CPU waiting.
+    """
     cpus = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
-    workers = min(jobs or cpus, len(orders))
+    workers = min(where.jobs or cpus, len(orders))
     if workers < 2 or "fork" not in multiprocessing.get_all_start_methods():
         yield from (run_virtually(*order) for order in orders)
         return
@@ -119,12 +128,21 @@ def _results(orders: list[_Order], benches: Benches, jobs: int | None) -> Iterat
         VirtualBench(bench).run(1)
     _ORDERS[:] = orders
     with multiprocessing.get_context("fork").Pool(workers) as pool:
-        yield from pool.imap(_run, range(len(orders)))
+        long_s = sum(order.scenario.seconds for order in orders) / workers / _LONG
+        begins = sorted(range(len(orders)), key=lambda number: orders[number].scenario.seconds < long_s)
+        begun = {number: pool.apply_async(_run, (number, where.drawn)) for number in begins}
+        yield from (begun[number].get() for number in range(len(orders)))
 
 
-def _run(number: int) -> ScenarioTest:
-    """Run one test in a process of its own; who wants it recorded runs it again."""
-    return replace(run_virtually(*_ORDERS[number]), record=None)
+def _run(number: int, drawn: bool) -> ScenarioTest:
+    """Run one test in a process of its own, and draw it there: the evidence, a megabyte a second, stays behind."""
+    done = run_virtually(*_ORDERS[number])
+    if drawn:
+        from hilplant.testing.report import drawn_expectations
+
+        done = replace(done, drawn=drawn_expectations(done))
+    nothing = replace(done.evidence, rows=done.evidence.rows[:0], frame_ticks=done.evidence.frame_ticks[:0], frames=())
+    return replace(done, record=None, evidence=nothing)
 
 
 def figures_of(tests: Sequence[ScenarioTest]) -> dict[str, Any]:

@@ -69,13 +69,18 @@ def bench(tmp_path: Path) -> Path:
 
 
 @pytest.mark.timeout(900)  # ten servers start, one after the other
-def test_the_same_ten_files_get_the_same_verdicts_where_no_tick_was_lost(bench: Path, tmp_path: Path) -> None:
+def test_the_same_ten_files_get_the_same_verdicts(bench: Path, tmp_path: Path) -> None:
+    """A test in which ticks were lost is undecided; it is run again on a slow clock, as a slow machine would need."""
     virtual = verdicts("polynomial", tmp_path / "virtual.json", str(FILES))
     clocked = verdicts(bench, tmp_path / "clocked.json", str(FILES), "--on", GROUP)
     assert len(virtual) == 10
     assert {each["ruling"] for each in virtual.values()} == {"pass", "fail", "blocked"}
-    decided = {name for name, each in clocked.items() if each["ruling"] != "inconclusive"}
-    assert {name: clocked[name]["ruling"] for name in decided} == {name: virtual[name]["ruling"] for name in decided}
+    undecided = [name for name, each in clocked.items() if each["ruling"] == "inconclusive"]
+    if undecided:
+        clocked |= verdicts(bench, tmp_path / "slow.json", *undecided, "--on", GROUP, "--pace", "0.1")
+    assert {name: each["ruling"] for name, each in clocked.items()} == {
+        name: each["ruling"] for name, each in virtual.items()
+    }
 
 
 @pytest.mark.timeout(900)

@@ -9,7 +9,7 @@ from hilplant.cli.voice import Voice
 from hilplant.control.reference import parse_reference
 from hilplant.ecu.controller_choice import ControllerChoice, Driven, seat_on_bus
 from hilplant.ecu.velocity_node import VelocityNode, VelocityReport, run_velocity_node, status_period_ns
-from hilplant.runtime.clock import WallClock
+from hilplant.runtime.clock import clock_at
 from hilplant.runtime.server import StopRequest, ended_by_signals
 from hilplant.units import SECOND_NS
 
@@ -22,14 +22,13 @@ def control_command(
     `wanted` are its name, its reference as written and its time budget [us]. Say whether it was sound to the end.
     """
     name, reference, budget_us = wanted
-    choice, bench = ControllerChoice(name, parse_reference(reference), budget_us), load_bench(bench_name)
-    interface = bench.interface if channel is None else {**bench.interface, "channel": channel}
+    choice, bench = ControllerChoice(name, parse_reference(reference), budget_us), load_bench(bench_name).at(channel)
     period_ns = status_period_ns(bench.send)
     side, seat = bench.ecu_side(), seat_on_bus(choice, Driven(bench.parameters.motor, period_ns / SECOND_NS))
-    node = VelocityNode(side, open_transport(interface), seat)
+    node = VelocityNode(side, open_transport(bench.interface), seat)
     voice = Voice()
     node.report = _printer(voice)
-    stop, clock = StopRequest(), WallClock()
+    stop, clock = StopRequest(), clock_at(bench.pace)
     end_ns = math.inf if seconds is None else clock.now_ns() + seconds * SECOND_NS
     with ended_by_signals(stop):
         try:

@@ -15,25 +15,27 @@ from hilplant.ecu.node import EcuNode, EcuReport, run_ecu
 from hilplant.ecu.settings import controller_settings
 from hilplant.ecu.stalk import StalkSource, TypedStalk, parse_stalk, stalk_at, stalk_words
 from hilplant.ecu.vocabulary import Fault, Stalk
-from hilplant.runtime.clock import WallClock
+from hilplant.runtime.clock import clock_at
 from hilplant.runtime.server import StopRequest, ended_by_signals
 from hilplant.signals import STATUS
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 
-def ecu_command(bench_name: str, seconds: float | None, stalk: str | None, channel: str | None = None) -> None:
+def ecu_command(
+    bench_name: str, seconds: float | None, stalk: str | None, place: tuple[str | None, float | None] = (None, None)
+) -> None:
     """Be the ECU until the time is up, or SIGTERM or Ctrl-C ends it; the relays are released at the end.
 
-    A written stalk goes before the one on the bus, and that before a typed one.
+    A written stalk goes before the one on the bus, and that before a typed one. `place` are another channel and pace
+    than the bench's.
     """
     source = _source(stalk)
-    bench = load_bench(bench_name)
-    interface = bench.interface if channel is None else {**bench.interface, "channel": channel}
+    bench = load_bench(bench_name).at(*place)
     side = bench.ecu_side() if stalk is None else replace(bench.ecu_side(), stalk=())
-    node = EcuNode(side, open_transport(interface), controller_settings(bench.ecu))
+    node = EcuNode(side, open_transport(bench.interface), controller_settings(bench.ecu))
     voice = Voice()
     node.report = _printer(voice)
-    stop, clock = StopRequest(), WallClock()
+    stop, clock = StopRequest(), clock_at(bench.pace)
     end_ns = math.inf if seconds is None else clock.now_ns() + seconds * SECOND_NS
 
     def ended() -> bool:

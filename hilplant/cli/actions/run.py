@@ -49,10 +49,11 @@ def run_daemon(  # noqa: PLR0913, PLR0917
     door: bool = True,
     page: PageOptions | None = None,
     scenario: Played | None = None,
+    pace: float | None = None,
 ) -> Summary:
     """Serve a bench and say on the terminal how it started and how it ended."""
     with door_begun(door) as opening:
-        return _run(name, seconds, record, channel, inside, opening, page, scenario)
+        return _run(name, seconds, record, channel, inside, opening, page, scenario, pace)
 
 
 def _run(  # noqa: PLR0913, PLR0917
@@ -64,9 +65,10 @@ def _run(  # noqa: PLR0913, PLR0917
     door: Companion | None,
     page: PageOptions | None,
     scenario: Played | None,
+    pace: float | None,
 ) -> Summary:
     played = None if scenario is None else _read(scenario.path)
-    bench = _loaded(name, channel, played)
+    bench = _loaded(name, played).at(channel, pace)
     seat: LoopSeat | OwnLoopSeat | None = None
     if inside is not None:
         bench, seat = seated(bench, inside)
@@ -108,13 +110,11 @@ def _read(path: Path) -> "Scenario":
     return load_scenario(path)
 
 
-def _loaded(name: str, channel: str | None, played: "Scenario | None") -> Bench:
-    """Return the bench, on another channel if one is given, at the scenario's start if one is played."""
+def _loaded(name: str, played: "Scenario | None") -> Bench:
+    """Return the bench, at the scenario's start if one is played."""
     bench = load_bench(name)
     if played is not None:
         bench = replace(bench, state_row=initial_state(bench.parameters, bench.initial | played.initial))
-    if channel is not None:
-        bench = replace(bench, interface={**bench.interface, "channel": channel})
     return bench
 
 
@@ -153,6 +153,10 @@ def _say_start(bench: Bench, voice: Voice, privileges: list[Privilege]) -> None:
     missing = [f"  without {p.name}: {p.fix}" for p in privileges if not p.granted]
     step_ms = bench.step_ns / MILLISECOND_NS
     voice.say(f"{bench.name} serves on {interface}, a tick every {step_ms:g} ms; Ctrl-C ends it")
+    if bench.pace != 1.0:
+        voice.say(
+            f"  pace {bench.pace:g}: a second here takes {1 / bench.pace:g} s; what else is on the bus must be as slow"
+        )
     if bench.interface.get("interface") == "virtual":
         voice.say(
             "  interface virtual: no other process can reach it; hilplant vcan, or the bench multicast, can be reached",

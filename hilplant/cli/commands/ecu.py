@@ -5,17 +5,18 @@ from typing import Annotated
 import typer
 
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import DEFAULT, BenchName, Channel, Seconds
+from hilplant.cli.options import DEFAULT, BenchName, Channel, Pace, Seconds
 
 app = command_app()
 
 
 @app.command(epilog='Example: hilplant ecu default --stalk "0:off,1:slow,6:fast,11:i3,30:off,33:flick"')
-def ecu(
+def ecu(  # noqa: PLR0913, PLR0917
     bench: BenchName = DEFAULT,
     seconds: Seconds = None,
     stalk: Annotated[str | None, typer.Option(help="movements of the stalk by time [s]: TIME:POSITION,...")] = None,
     channel: Channel = None,
+    pace: Pace = None,
     chart: Annotated[bool, typer.Option("--chart", help="print the controller's states as a Mermaid diagram")] = False,
 ) -> None:
     """Simulate the body ECU, a CAN node of its own.
@@ -30,4 +31,4 @@ def ecu(
         raise typer.Exit()
     from hilplant.cli.actions.ecu import ecu_command
 
-    ecu_command(bench, seconds, stalk, channel)
+    ecu_command(bench, seconds, stalk, (channel, pace))

@@ -14,6 +14,7 @@ from hilplant.cli.options import (
     Budget,
     Channel,
     JsonFile,
+    Pace,
     Seconds,
     flat,
     write_json,
@@ -37,6 +38,7 @@ def run(  # noqa: PLR0913, PLR0917
     rotate: Annotated[str | None, typer.Option(help="record in parts of this size or time: 100MB, 1h, or both")] = None,
     keep: Annotated[int | None, typer.Option(min=1, help="keep this many parts, the newest of all starts")] = None,
     channel: Channel = None,
+    pace: Pace = None,
     controller: Annotated[str | None, typer.Option(help="a velocity controller inside the loop")] = None,
     reference: Annotated[
         str | None, typer.Option(help="its wanted crank speed: RAD_S, or TIME:RAD_S,...  [default: 3.14]")
@@ -72,7 +74,7 @@ def run(  # noqa: PLR0913, PLR0917
     inside = None if controller is None else Inside(controller, reference or "3.14", budget_us)
     played = None if scenario is None else Played(scenario, verdicts)
     page_wanted = page_options(page, logs, browser, stream)
-    summary = run_daemon(bench, seconds, to, channel, inside, not no_channel, page_wanted, played)
+    summary = run_daemon(bench, seconds, to, channel, inside, not no_channel, page_wanted, played, pace)
     missing = " | ".join(f"{given.name}: {given.fix}" for given in summary.privileges if not given.granted)
     with ended_by_signals(StopRequest()):  # one more Ctrl-C shall not cost the figures
         write_json(json_file, flat(asdict(summary) | {"privileges": {"missing": missing}}))

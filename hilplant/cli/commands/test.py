@@ -7,7 +7,7 @@ import typer
 
 from hilplant.atomic_write import claim
 from hilplant.cli.groups import command_app
-from hilplant.cli.options import JsonFile, write_json
+from hilplant.cli.options import JsonFile, Pace, write_json
 from hilplant.extras import need
 from hilplant.failure import Failure
 
@@ -27,6 +27,7 @@ def test(  # noqa: PLR0913, PLR0917
         str,
         typer.Option(help="virtual: in virtual time; else a channel of the bench's interface, such as can0"),
     ] = "virtual",
+    pace: Pace = None,
     ecu: Annotated[str, typer.Option(help="stand-in; external: none joins here")] = "stand-in",
     jobs: Annotated[
         int | None, typer.Option(min=1, help="processes, in virtual time; as many as there are CPUs if left out")
@@ -53,14 +54,11 @@ def test(  # noqa: PLR0913, PLR0917
     from hilplant.testing.suite import Where, figures_of, run_tests, scenario_files, summary_of
     from hilplant.testing.words import lines_of
 
-    if ecu not in ("stand-in", "external"):
-        raise Failure(f"--ecu must be stand-in or external, not {ecu}")
+    _refuse_misfits(on, ecu, controller, pace)
     for file in (junit, html, json_file):
         claim(file)
-    if controller is not None and on != "virtual":
-        raise Failure(f"--controller is for virtual time; on {on}: hilplant run --controller, or hilplant control")
     inside = None if controller is None else Inside(controller, reference)
-    where = Where(None if on == "virtual" else on, ecu == "stand-in", jobs, inside)
+    where = Where(None if on == "virtual" else on, ecu == "stand-in", jobs, inside, pace, html is not None)
     tests = run_tests(scenario_files(scenarios or []), bench, where, lambda done: typer.echo("\n".join(lines_of(done))))
     typer.echo(summary_of(tests))
     if junit is not None:
@@ -69,3 +67,13 @@ def test(  # noqa: PLR0913, PLR0917
         write_report(html, tests)
     write_json(json_file, figures_of(tests))
     raise typer.Exit(0 if all(done.ruling == "pass" for done in tests) else 1)
+
+
+def _refuse_misfits(on: str, ecu: str, controller: str | None, pace: float | None) -> None:
+    """Refuse options that do not fit each other."""
+    if ecu not in ("stand-in", "external"):
+        raise Failure(f"--ecu must be stand-in or external, not {ecu}")
+    if controller is not None and on != "virtual":
+        raise Failure(f"--controller is for virtual time; on {on}: hilplant run --controller, or hilplant control")
+    if pace is not None and on == "virtual":
+        raise Failure("--pace is that of a real clock, and virtual time has none: give --on CHANNEL with it")
