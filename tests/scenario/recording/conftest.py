@@ -47,6 +47,7 @@ class SmallBench:
 
     name: str = "small bench"
     step_ns: int = STEP_NS
+    pace: float = 1.0
     parameter_row: NDArray[np.float64] = field(
         default_factory=lambda: pack(
             Parameters(1e-3, MOTOR, ParkSwitch(0.0, 0.2, 0.0, 0.0), Load(0.0, 0.0, 0.0), ARM, ARM)
