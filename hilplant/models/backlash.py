@@ -104,7 +104,7 @@ def parting(whole: Joint, load: Resistance, train: Train, ahead_rad: float) -> f
     if motion.speed == 0.0:
         return step_s if held_together(motion, load, train, ahead_rad) else 0.0
     side = -1.0 if ahead_rad > 0.0 else 1.0
-    pressing, drive, torque = side * start.direction * load_torque(motion, load, start, train), start.drive, 0.0
+    pressing, drive = side * start.direction * load_torque(motion, load, start, train), start.drive
     if pressing < 0.0:
         return 0.0
     torque = start.direction * drive.dry_torque
