@@ -92,7 +92,7 @@ class Program:
     def constant(self, name: str, module: str, number: Any) -> Expression:
         """Return a module's constant by its name; two of one name get that of their module in front."""
         value = self.known(number)
-        text = value.c.removeprefix(f"({value.type.c})")
+        text = re.sub(r"\(\w+\)(?={)", "", value.c)  # with a record's type in front it would be no constant in C
         for candidate in (name.upper(), f"{module}_{name}".upper()):
             declared = f"static const {self.use(value.type)} {candidate} = {text};"
             if self.constants.setdefault(candidate, declared) == declared:

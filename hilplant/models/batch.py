@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from hilplant.jit import compiled_for_threads
+from hilplant.jit import compiled, compiled_for_threads
 from hilplant.models.guard import admitted
-from hilplant.models.plant import step
+from hilplant.models.plant import is_plain, plain, step
 from hilplant.models.records import Parameters, State
 from hilplant.models.row import unpack, write
 from hilplant.signals import Inputs
@@ -19,7 +19,19 @@ def simulate_columns(  # noqa: PLR0913, PLR0917
     `columns` are their places in ``signals.OUTPUTS``, `output` an array [ticks, len(columns)]. `row` is room
     for all outputs of one tick.
     """
-    parameters, state = unpack(Parameters, parameter_row), admitted(unpack(State, state_row))
+    parameters = unpack(Parameters, parameter_row)
+    if is_plain(parameters):
+        columns_with(plain(parameters), state_row, input_rows, tables, columns, output, row)
+    else:
+        columns_with(parameters, state_row, input_rows, tables, columns, output, row)
+
+
+@compiled
+def columns_with(  # noqa: PLR0913, PLR0917
+    parameters: Parameters, state_row: Any, input_rows: Any, tables: Any, columns: Any, output: Any, row: Any
+) -> None:
+    """Do the same with these parameters."""
+    state = admitted(unpack(State, state_row))
     for tick in range(input_rows.shape[0]):
         state, outputs = step(state, unpack(Inputs, input_rows[tick]), parameters, tables)
         write(outputs, row)

@@ -10,15 +10,17 @@ from hilplant.models.guard import admit, admitted, hold_if_wrong
 from hilplant.models.linkage_faults import LINK_BROKEN, broken_at
 from hilplant.models.load import network_now, resist_as
 from hilplant.models.lookup import derivative, value, within_turn
+from hilplant.models.mechanical_records import LinkageCondition, Obstacles
 from hilplant.models.motor_choice import move
 from hilplant.models.park_switch import contact_now
-from hilplant.models.records import Parameters, State
+from hilplant.models.records import Parameters, Relays, Sensors, State, Wiring
 from hilplant.models.reduced import left_pressing, right_pressing
 from hilplant.models.relays import move_relays
 from hilplant.models.resistance import Crank
-from hilplant.models.row import unpack, write
+from hilplant.models.row import changed, unpack, write
 from hilplant.models.sensors import read_current, stick_contact
 from hilplant.models.shaft import Joint, Train, load_torque, start_of
+from hilplant.models.slow_records import Heat, Water, Wear
 from hilplant.models.slow_states import Reached, as_it_is, nothing_slow, slow_after
 from hilplant.models.tables import LEFT_ROCKER, RIGHT_ROCKER
 from hilplant.models.water import rain_signal, wetted
@@ -153,10 +155,49 @@ def without_denormals(value: float) -> float:
     return 0.0 if abs(value) < 1e-30 else value
 
 
+class Additions(NamedTuple):
+    """The parameters that a plant without additions and faults does not look at."""
+
+    wiring: Wiring
+    relays: Relays
+    sensors: Sensors
+    heat: Heat
+    obstacles: Obstacles
+    linkage: LinkageCondition
+    wear: Wear
+    water: Water
+
+
+NO_ADDITIONS = Additions(Wiring(), Relays(), Sensors(), Heat(), Obstacles(), LinkageCondition(), Wear(), Water())
+
+
+@compiled
+def is_plain(parameters: Parameters) -> bool:
+    """Return whether nothing is added to the plant and nothing of it is faulty."""
+    electrical = parameters.wiring.altered + parameters.relays.altered
+    sensors = parameters.sensors.altered + parameters.sensors.park_stuck
+    return nothing_slow(parameters) and electrical + sensors == 0.0
+
+
+@compiled
+def plain(parameters: Parameters) -> Parameters:
+    """Return the parameters of a plain plant with constants for what is not looked at: the compiler leaves it out."""
+    return changed(parameters, NO_ADDITIONS)
+
+
 @compiled
 def tick(state_row: Any, input_row: Any, parameter_row: Any, tables: Any, output_row: Any) -> None:
     """Take one step on packed rows of floats; `state_row` moves on, `output_row` is filled. For the server."""
     parameters = unpack(Parameters, parameter_row)
+    if is_plain(parameters):
+        tick_with(plain(parameters), state_row, input_row, tables, output_row)
+    else:
+        tick_with(parameters, state_row, input_row, tables, output_row)
+
+
+@compiled
+def tick_with(parameters: Parameters, state_row: Any, input_row: Any, tables: Any, output_row: Any) -> None:
+    """Take one step on packed rows with these parameters."""
     state, outputs = step(admitted(unpack(State, state_row)), unpack(Inputs, input_row), parameters, tables)
     write(state, state_row)
     write(outputs, output_row)
@@ -166,6 +207,15 @@ def tick(state_row: Any, input_row: Any, parameter_row: Any, tables: Any, output
 def simulate_rows(state_row: Any, input_rows: Any, parameter_row: Any, tables: Any, output_rows: Any) -> None:
     """Take one step for each row of inputs, and leave its outputs in the same row of `output_rows`."""
     parameters = unpack(Parameters, parameter_row)
+    if is_plain(parameters):
+        simulate_with(plain(parameters), state_row, input_rows, tables, output_rows)
+    else:
+        simulate_with(parameters, state_row, input_rows, tables, output_rows)
+
+
+@compiled
+def simulate_with(parameters: Parameters, state_row: Any, input_rows: Any, tables: Any, output_rows: Any) -> None:
+    """Take one step for each row of inputs with these parameters."""
     state = admitted(unpack(State, state_row))
     for index in range(input_rows.shape[0]):
         state, outputs = step(state, unpack(Inputs, input_rows[index]), parameters, tables)
