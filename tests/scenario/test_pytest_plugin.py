@@ -1,7 +1,6 @@
 """The plugin as a user of pytest meets it: in a folder of its own, with tests that pass and tests that fail."""
 
 import os
-import time
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -52,11 +51,6 @@ DRIVES = """
         car.set(brake_torque_n_m=500.0)
         car.wait("EcuFault", "Stall", within=3.0)
         assert car.bus.recv(1.0) is not None
-
-    def test_inrush(wiper):
-        wiper.expect.always("current_a", below=5.0)
-        wiper.send("RelayCommand", RelayOn=True)
-        wiper.run(1.0)
 """
 
 
@@ -70,88 +64,72 @@ def run(pytester: pytest.Pytester, *arguments: str) -> pytest.RunResult:
     return pytester.runpytest_subprocess(*PLUGIN, "-p", "no:cacheprovider", *arguments)
 
 
-def test_ten_lines_drive_the_plant_in_plant_seconds(pytester: pytest.Pytester) -> None:
-    pytester.makepyfile(PARKS)
-    run(pytester).assert_outcomes(passed=1)
+FLICK = """
+    def test_flick(car):
+        car.expect.count({"park_contact": "rises"}, equals=1)
+        car.run(1.0)
+        car.send("StalkCommand", Flick_Wipe="Pressed")
+        car.run(0.3)
+        car.send("StalkCommand", Flick_Wipe=False)
+        car.wait("ParkContact", "Open", within=1.0)
+        took = car.wait("ParkContact", "Closed", within=3.0)
+        assert 0.5 < took < 2.0
+        car.run(1.0)
+"""
+INRUSH = """
+    def test_inrush(wiper):
+        wiper.expect.always("current_a", below=5.0)
+        wiper.send("RelayCommand", RelayOn=True)
+        wiper.run(1.0)
+"""
+WAITS = """
+    def test_never(wiper):
+        wiper.wait("ParkContact", 0, within=0.5)
+
+    def test_typing_error(wiper):
+        wiper.wait("ParkContakt", 0)
+"""
+#: 20,000 frames of the plant, in 20 s of the processor at most.
+BESIDE = """
+    import can, time
+
+    def test_can(wiper):
+        began_s = time.process_time()
+        on = can.Message(arbitration_id=0x120, data=[1, 0], is_extended_id=False)
+        task = wiper.bus.send_periodic(on, 0.05)
+        seen = [wiper.bus.recv(1.0) for _ in range(20000)]
+        times = [message.timestamp for message in seen if message.arbitration_id == 0x200]
+        gaps = [later - sooner for sooner, later in zip(times, times[1:])]
+        assert 0.0099 < max(gaps) < 0.0101 and times[-1] > 20.0
+        assert wiper["relay_on"] == 1
+        task.stop()
+        wiper.run(0.6)
+        assert wiper["relay_on"] == 0 and wiper["timeout"] == 1
+        wiper.bus.set_filters([{"can_id": 0x123, "can_mask": 0x7FF}])
+        before = wiper.time_s
+        assert wiper.bus.recv(2.5) is None
+        assert abs(wiper.time_s - before - 2.5) < 0.002
+        assert time.process_time() - began_s < 20.0
+"""
 
 
-def test_a_stand_in_ecu_is_driven_by_the_stalk_message(pytester: pytest.Pytester) -> None:
-    pytester.makepyfile(
-        """
-        def test_flick(car):
-            car.expect.count({"park_contact": "rises"}, equals=1)
-            car.run(1.0)
-            car.send("StalkCommand", Flick_Wipe="Pressed")
-            car.run(0.3)
-            car.send("StalkCommand", Flick_Wipe=False)
-            car.wait("ParkContact", "Open", within=1.0)
-            took = car.wait("ParkContact", "Closed", within=3.0)
-            assert 0.5 < took < 2.0
-            car.run(1.0)
-        """
-    )
-    run(pytester).assert_outcomes(passed=1)
+def test_virtual_time_python_can_and_what_a_failure_leaves(pytester: pytest.Pytester) -> None:
+    """Ten lines drive the plant, a stalk message the stand-in ECU; python-can beside them obeys virtual time.
 
-
-def test_what_fails_leaves_line_plot_and_a_recording_that_replays(pytester: pytest.Pytester) -> None:
-    pytester.makepyfile(
-        test_inrush="""
-        def test_inrush(wiper):
-            wiper.expect.always("current_a", below=5.0)
-            wiper.send("RelayCommand", RelayOn=True)
-            wiper.run(1.0)
-        """
-    )
-    result = run(pytester)
-    result.assert_outcomes(failed=1)
+    What fails leaves its line, a plot and a recording that replays; waiting has a limit, and says what there is.
+    """
+    pytester.makepyfile(test_parks=PARKS, test_flick=FLICK, test_beside=BESIDE, test_inrush=INRUSH, test_waits=WAITS)
+    result = run(pytester, "-rA")
+    result.assert_outcomes(passed=3, failed=3)
+    for name in ("test_parks.py::test_parks", "test_flick.py::test_flick", "test_beside.py::test_can"):
+        result.stdout.fnmatch_lines([f"PASSED {name}"])
     result.stdout.fnmatch_lines(["*test_inrush.py:2: fail: always: current_a, below: 5*A beyond the limit"])
     folder = pytester.path / "hilplant-failures" / "test_inrush.py_test_inrush"
     assert (folder / "run.png").stat().st_size > 10_000
     assert replay(folder / "run.hilrec").equal
     result.stdout.fnmatch_lines([f"replay: hilplant replay {folder / 'run.hilrec'}"])
-
-
-def test_waiting_has_a_limit_and_says_what_there_is(pytester: pytest.Pytester) -> None:
-    pytester.makepyfile(
-        """
-        def test_never(wiper):
-            wiper.wait("ParkContact", 0, within=0.5)
-
-        def test_typing_error(wiper):
-            wiper.wait("ParkContakt", 0)
-        """
-    )
-    result = run(pytester)
-    result.assert_outcomes(failed=2)
     result.stdout.fnmatch_lines(["*ParkContact equals 0: not within 0.5 s; it is 1 at 0.500 s"])
     result.stdout.fnmatch_lines(["*no signal 'ParkContakt', did you mean 'ParkContact'?"])
-
-
-def test_python_can_beside_it_obeys_virtual_time(pytester: pytest.Pytester) -> None:
-    pytester.makepyfile(
-        """
-        import can
-
-        def test_can(wiper):
-            on = can.Message(arbitration_id=0x120, data=[1, 0], is_extended_id=False)
-            task = wiper.bus.send_periodic(on, 0.05)
-            seen = [wiper.bus.recv(1.0) for _ in range(20000)]
-            times = [message.timestamp for message in seen if message.arbitration_id == 0x200]
-            gaps = [later - sooner for sooner, later in zip(times, times[1:])]
-            assert 0.0099 < max(gaps) < 0.0101 and times[-1] > 20.0
-            assert wiper["relay_on"] == 1
-            task.stop()
-            wiper.run(0.6)
-            assert wiper["relay_on"] == 0 and wiper["timeout"] == 1
-            wiper.bus.set_filters([{"can_id": 0x123, "can_mask": 0x7FF}])
-            before = wiper.time_s
-            assert wiper.bus.recv(2.5) is None
-            assert abs(wiper.time_s - before - 2.5) < 0.002
-        """
-    )
-    begin_s = time.process_time()
-    run(pytester).assert_outcomes(passed=1)
-    assert time.process_time() - begin_s < 20.0
 
 
 @pytest.mark.parametrize("workers", [(), ("-n", "2", "-p", "xdist")], ids=["alone", "xdist"])
@@ -175,7 +153,7 @@ def test_the_same_tests_in_virtual_time_and_on_a_channel(pytester: pytest.Pytest
     pytest.importorskip("msgpack")
     bench = pytester.path / "on_a_bus.yaml"
     bench.write_text(ON_A_BUS.format(port=45000 + os.getpid() % 2000))
-    pytester.makepyfile(PARKS + DRIVES)
+    pytester.makepyfile(PARKS + DRIVES + INRUSH)
     Path(pytester.path, "test_good.hil.yaml").write_text(SCENARIO.replace("LIMIT", "25"))
     result = run(pytester, "--hilplant-bench", str(bench), *options)
     outcomes, ill = result.parseoutcomes(), [line for line in result.outlines if "below: " in line]

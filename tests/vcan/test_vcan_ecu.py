@@ -110,7 +110,7 @@ def test_a_stalk_by_cansend_through_all_stages(
     assert seen.times("RelayCommand", "RelayFast", "Fast")
     assert_parked(seen)
     for interval, pause_s in enumerate(PAUSES_S, start=1):
-        seen.wait_after(stalk("Intermittent", interval), STARTS, count=3)
+        seen.wait_after(stalk("Intermittent", interval), STARTS, count=2)
         check_periods(seen, pause_s)
     for position in ("Slow", "Fast"):
         seen.wait_after(stalk(position), ("EcuStatus", "EcuState", position))
@@ -124,10 +124,10 @@ def test_a_stalk_by_cansend_through_all_stages(
 def check_periods(seen: Watcher, pause_s: float) -> None:
     """From a start to the next it takes the wipe, until the park switch closes, and the pause: within 10 ms.
 
-    The host may hold the guest up now and then, so the best of some periods is judged: two, and more if it must be. A
+    The host may hold the guest up now and then, so the best of some periods is judged: more than one if it must be. A
     pause that is wrong is wrong each time.
     """
-    excesses = [excess_s(seen, pause_s, last) for last in (-2, -1)]
+    excesses = [excess_s(seen, pause_s, -1)]
     while min(map(abs, excesses)) > 0.010 and len(excesses) < MOST_PERIODS:
         seen.wait_after(lambda: None, STARTS)
         excesses.append(excess_s(seen, pause_s, -1))
