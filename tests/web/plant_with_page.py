@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,9 +33,9 @@ class PlantWithPage:
 
 
 @contextmanager
-def plant_with_page(logs: Path) -> Iterator[PlantWithPage]:
-    """Start a demonstration with a page, and end it."""
-    command = [sys.executable, "-m", "hilplant", "demo", "--page", "0", "--logs", str(logs), "--seconds", "3600"]
+def plant_with_page(logs: Path, what: Sequence[str] = ("demo",)) -> Iterator[PlantWithPage]:
+    """Start a demonstration, or what else serves a page, and end it."""
+    command = [sys.executable, "-m", "hilplant", *what, "--page", "0", "--logs", str(logs), "--seconds", "3600"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=logs.parent)
     watch = threading.Timer(_START_S, process.kill)
     watch.start()
