@@ -110,7 +110,7 @@ def tell_exports(path: Path, seconds: int) -> None:
                 memory = subprocess.run(words, check=True, capture_output=True, text=True).stdout
                 sys.stdout.write(
                     f".{ending}, {name}: {out.stat().st_size / 1e6:.1f} MB in {time.monotonic() - began_s:.0f} s, "
-                    f"memory {float(memory):.0f} MB\n"
+                    f"memory {float(memory.split()[-1]):.0f} MB\n"
                 )
                 sys.stdout.flush()
 
