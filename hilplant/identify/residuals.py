@@ -115,6 +115,7 @@ class LeastSquares:
         moved = self.moved
         if basis is None:
             basis = np.diag(FIRST_STEP * np.maximum(np.abs(x[moved]), 1.0))
+        basis = self._within_nature(x, basis)
         sets = np.repeat(x[np.newaxis], 2 * len(moved), axis=0)
         sets[0::2, moved] += basis.T
         sets[1::2, moved] -= basis.T
@@ -123,6 +124,14 @@ class LeastSquares:
         columns[:, moved] = np.linalg.solve(basis.T, 0.5 * (made[0::2] - made[1::2])).T
         self._fill_offsets(columns)
         return columns
+
+    def _within_nature(self, x: Floats, basis: Floats) -> Floats:
+        """Shorten directions that would take a parameter below 0: with such an inductance a current grows for ever."""
+        farthest = np.full(len(self.moved), np.inf)
+        for place, parameter in enumerate(self.choice.parameters):
+            if not parameter.signed:
+                farthest[place] = max(0.5 * x[place], FIRST_STEP)
+        return np.asarray(basis / np.maximum(1.0, np.max(np.abs(basis) / farthest[:, np.newaxis], axis=0)), np.float64)
 
     @property
     def moved(self) -> NDArray[np.intp]:

@@ -110,6 +110,20 @@ def test_a_search_that_ended_without_wet_friction_is_begun_again(bench):
     assert solution.noise.current_a == pytest.approx(0.1, rel=0.05)
 
 
+def test_differences_do_not_reach_below_an_inductance_of_nothing(bench):
+    """Derivatives are taken as far as the residuals change little; an inductance may be nothing before that."""
+    runs = twin_runs(bench, thesis_conditions((13.0,)), Corruption(), 3)
+    choice = chosen(bench.parameter_row)
+    problem = LeastSquares(runs, choice, bench.tables, expected_noise(runs), np.abs(choice.values))
+    values = choice.values.copy()
+    values[choice.names.index("fast_inductance_henry")] *= 0.02
+    x = problem.start(values)
+    alone = problem.jacobian(x)
+    far = problem.jacobian(x, np.diag(np.full(len(problem.moved), 0.05)))
+    place = choice.names.index("fast_inductance_henry")
+    assert np.linalg.norm(far[:, place] - alone[:, place]) < 0.5 * np.linalg.norm(alone[:, place])
+
+
 def test_a_known_force_tells_more(bench):
     """With the force held, as from a spring balance, the settled dry coefficient is told."""
     runs = twin_runs(bench, thesis_conditions(VOLTS), Corruption(), 1)
