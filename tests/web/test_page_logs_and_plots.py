@@ -114,7 +114,11 @@ def test_a_recording_shows_frames_ecu_and_events_at_the_cursor(browser: Browser,
         expect(values).to_contain_text(f"MotorCurrent {decoded['MotorCurrent']:.5g}")
         expect(page.locator("#frames tr[data-message=MotorStatus] td").nth(5)).to_have_text(str(len(sent)))
         page.locator("#tab-ecu").click()
-        expect(page.locator("#ecu-live")).to_have_text("slow")
+        status = database.get_message_by_name("EcuStatus")
+        told = [each for each in frames_of(drive) if each["identifier"] == status.frame_id]
+        state = status.decode([each for each in told if each["time_ns"] <= until_ns][-1]["data"])["EcuState"]
+        assert str(state) in {"Slow", "Wait"}  # the stalk was switched off as soon as the motor turned
+        expect(page.locator("#ecu-live")).to_have_text(str(state).lower())
         page.locator("#tab-events").click()
         begun = page.locator("#events li", has_text="hand recording").last
         begun.locator("button").click()
