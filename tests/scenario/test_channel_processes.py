@@ -93,14 +93,14 @@ def test_faults_of_a_killed_client_go_and_all_are_seen_while_they_are_there(run:
 
 def test_a_fault_is_inserted_replaced_and_cleared_each_in_the_tick_that_is_told(run: object) -> None:
     with hilplant.connect(CHANNEL) as channel:
-        channel.rows(["tick"])
+        before, _ = channel.rows(["tick", "faults_active"])
         inserted = channel.fault("frames_lost", message="ParkSwitch", share=0.5)
         again = channel.fault("frames_lost", message="ParkSwitch", share=1.0)
         cleared = channel.clear("frames_lost")
         wait_until(lambda: channel.latest()["tick"] > cleared)
         rows, lost = channel.rows(["tick", "faults_active"])
         assert lost == 0
-        active = {int(tick): int(count) for tick, count in rows}
+        active = {int(tick): int(count) for tick, count in [*before, *rows]}
         assert [active[tick] for tick in (inserted - 1, inserted, again, cleared - 1, cleared)] == [0, 1, 1, 1, 0]
         with pytest.raises(Failure, match="neither hears nor sends a message 'ParkSwich', did you mean 'ParkSwitch'"):
             channel.fault("frames_lost", message="ParkSwich")

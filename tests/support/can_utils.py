@@ -60,14 +60,16 @@ def observed(candump: Any, name: str) -> list[tuple[float, dict[str, Any]]]:
 
 
 def last(candump: Any, name: str) -> dict[str, Any]:
-    """Return the signals of the newest frame of a message."""
+    """Return the signals of the newest frame of a message; wait for its first one."""
     message = DATABASE.get_message_by_name(name)
-    for line in reversed(list(candump.lines)):
-        match = LINE.match(line)
-        if match and int(match[2], 16) == message.frame_id:
-            signals: dict[str, Any] = message.decode(bytes.fromhex(match[3]))
-            return signals
-    raise AssertionError(f"no {name} was seen")
+
+    def newest() -> str | None:
+        matches = (LINE.match(line) for line in reversed(list(candump.lines)))
+        return next((match[3] for match in matches if match and int(match[2], 16) == message.frame_id), None)
+
+    assert wait_until(lambda: newest() is not None), f"no {name} was seen"
+    signals: dict[str, Any] = message.decode(bytes.fromhex(newest() or ""))
+    return signals
 
 
 def wait_until(condition: Callable[[], bool], seconds: float = 10.0) -> bool:
