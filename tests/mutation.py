@@ -2,11 +2,12 @@
 
 python tests/mutation.py --mutants 100 --seed 1 [--room models] [--near]
 
-Works on a copy of the checkout, with nothing compiled: the plant runs as Python. Each mutant is tried in a fork of a
-process that has the libraries loaded, first on the tests that name its module. The same seed and number give the same
-mutants of the same code. Each that lives is printed with file, line and change, to be killed by a test or argued to
-change nothing. One whose tests come to no end counts as killed only where the same tests without it take a fraction of
-that time; else it is slow, and not counted. Exit code 1 when a mutant lives or is slow.
+Works on a copy of the checkout. Each mutant is tried twice, first on the tests that name its module. With nothing
+compiled, in a fork of a process that has the libraries loaded: most are killed within seconds. Where that comes to no
+end in time, compiled, in a new process. The same seed and number give the same mutants of the same code. Each that
+lives is printed with file, line and change, to be killed by a test or argued to change nothing. One whose compiled
+tests come to no end counts as killed only where the same tests without it take a fraction of that time; else it is
+slow, and not counted. Exit code 1 when a mutant lives or is slow.
 """
 
 import argparse
@@ -45,12 +46,14 @@ ROOMS = {
     "ecu": ("ecu", "mutants"),
 }
 TESTS = ("unit", "property", "oracle", "scenario")
-#: These compile, start processes or simulate for minutes: without compiled code they are not of use here.
+#: These compile for other ends, start processes or simulate for minutes: they are not of use here.
 TOO_SLOW = ("in_c", "against_solver", "start", "soak", "daemon", "surrogates_search", "ecu_random_search", "processes")
 LIBRARIES = ("numpy", "scipy.optimize", "scipy.integrate", "numba", "can", "cantools", "pydantic", "yaml", "pyarrow",
              "typer", "e2e", "hypothesis", "pytest")  # fmt: skip
-#: CPU time, and time on the clock, of one mutant's tests, at which they are ended [s].
-LONGEST_S, LONGEST_WAIT_S = 180, 900
+#: CPU time of one mutant's tests, with nothing compiled and compiled, at which they are ended [s].
+LONGEST_S, LONGEST_COMPILED_S = 30, 600
+#: Time on the clock, as a multiple of that.
+LONGEST_WAIT = 5
 #: Tests that come to no end have found the mutant if without it they take less than this share of the longest time.
 QUICK_SHARE = 0.25
 KILLED, LIVES, SLOW = "killed", "LIVES", "slow"
@@ -167,9 +170,9 @@ class Copy:
         shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(".*", "__pycache__"))
 
     def clean(self, tests: list[str]) -> Trial:
-        """Run tests without a change, once for all."""
+        """Run tests without a change, compiled, once for all."""
         if tuple(tests) not in self._clean:
-            self._clean[tuple(tests)] = _ran(tests, self._folder)
+            self._clean[tuple(tests)] = _ran(tests, self._folder, compiled=True)
         return self._clean[tuple(tests)]
 
     def verdict(self, mutant: Mutant, tests: list[str], turn: int) -> str:
@@ -179,7 +182,9 @@ class Copy:
         changed.write_text(mutant.text, encoding="utf-8")
         os.utime(changed, (turn, turn))  # compiled bytes of an earlier turn are known as old
         try:
-            trial = _ran(tests, self._folder)
+            trial = _ran(tests, self._folder, compiled=False)
+            if not trial.ended:
+                trial = _ran(tests, self._folder, compiled=True)
         finally:
             changed.write_text(whole, encoding="utf-8")
         if trial.passed:
@@ -190,29 +195,36 @@ class Copy:
         return KILLED if clean.passed and clean.share < QUICK_SHARE else SLOW
 
 
-def _ran(tests: list[str], copy: Path) -> Trial:
-    """Run tests in a fork."""
+def _ran(tests: list[str], copy: Path, compiled: bool) -> Trial:
+    """Run tests in a fork; compiled, in a new process, with compiled code of its own."""
+    longest_s = LONGEST_COMPILED_S if compiled else LONGEST_S
     child = os.fork()
     if child == 0:
         os.setsid()
         os.chdir(copy)
         sys.path.insert(0, str(copy))
         os.environ["PYTHONPATH"] = str(copy)
-        resource.setrlimit(resource.RLIMIT_CPU, (LONGEST_S, LONGEST_S + 1))
+        resource.setrlimit(resource.RLIMIT_CPU, (longest_s, longest_s + 1))
         silence = os.open(os.devnull, os.O_RDWR)
         for number in (0, 1, 2):
             os.dup2(silence, number)
-        options = ["-q", "-x", "-p", "no:cacheprovider", "-m", "not vcan and not browser", "-o", "timeout=0"]
-        os._exit(int(importlib.import_module("pytest").main([*options, *tests])))
+        options = ["-q", "-x", "-p", "no:cacheprovider", "-m", "not vcan and not browser", "-o", "timeout=0", *tests]
+        if compiled:
+            cache = copy.parent / "compiled"
+            shutil.rmtree(cache, ignore_errors=True)
+            os.environ |= {"NUMBA_DISABLE_JIT": "0", "XDG_CACHE_HOME": str(cache)}
+            os.execv(sys.executable, [sys.executable, "-m", "pytest", *options])
+        os._exit(int(importlib.import_module("pytest").main(options)))
     begin_s, broken_off = time.monotonic(), False
     while not (found := os.wait4(child, os.WNOHANG))[0]:
-        if not broken_off and time.monotonic() - begin_s > LONGEST_WAIT_S:
+        if not broken_off and time.monotonic() - begin_s > LONGEST_WAIT * longest_s:
             os.killpg(child, signal.SIGKILL)
             broken_off = True
         time.sleep(0.05)
     _, status, usage = found
-    cpu_share = (usage.ru_utime + usage.ru_stime) / LONGEST_S
-    return Trial(status == 0, os.WIFEXITED(status), max(cpu_share, (time.monotonic() - begin_s) / LONGEST_WAIT_S))
+    cpu_s, on_clock_s = usage.ru_utime + usage.ru_stime, time.monotonic() - begin_s
+    share = max(cpu_s, on_clock_s / LONGEST_WAIT) / longest_s
+    return Trial(status == 0, os.WIFEXITED(status), share)
 
 
 def main() -> int:

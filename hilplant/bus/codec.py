@@ -190,11 +190,13 @@ def _links(message: Message, mappings: Sequence[Mapped], signals: Sequence[Signa
 
 def _refuse_twice(message: Message, links: Sequence[Linked]) -> None:
     """Refuse a signal of the plant that two mappings write."""
-    targets = [made.plant.name for made in links]
-    for position, (made, target) in enumerate(zip(links, targets, strict=True)):
-        if target in targets[:position]:
+    written = set()
+    for made in links:
+        target = made.plant.name
+        if target in written:
             name = databases_of(made)[0].name
             raise MappingError(message.name, name, f"{target} is written by two mappings; keep one")
+        written.add(target)
 
 
 def _limits(made: Linked) -> tuple[float, float]:
