@@ -28,28 +28,16 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[1]
 #: The rooms, or files, whose code is changed, and the tests that have to notice (names of test files begin so).
 ROOMS = {
-    "models": (
-        "models",
-        "park",
-        "motor",
-        "plant",
-        "networks",
-        "surrogates",
-        "dynamics_reduction",
-        "terminals",
-        "heat",
-        "wiper_under",
-    ),
-    "bus/protection.py": ("bus", "loop", "mutants"),
-    "bus/codec.py": ("bus", "mutants"),
-    "runtime/loop.py": ("loop", "ring", "daemon", "velocity", "mutants", "soak"),
-    "ecu": ("ecu", "mutants"),
+    "models": "models park motor plant networks surrogates dynamics_reduction terminals heat wiper_under",
+    "bus/protection.py": "bus loop mutants",
+    "bus/codec.py": "bus mutants",
+    "runtime/loop.py": "loop ring daemon velocity mutants soak",
+    "ecu": "ecu mutants",
 }
 TESTS = ("unit", "property", "oracle", "scenario")
 #: These compile for other ends, start processes or simulate for minutes: they are not of use here.
 TOO_SLOW = ("in_c", "against_solver", "start", "soak", "daemon", "surrogates_search", "ecu_random_search", "processes")
-LIBRARIES = ("numpy", "scipy.optimize", "scipy.integrate", "numba", "can", "cantools", "pydantic", "yaml", "pyarrow",
-             "typer", "e2e", "hypothesis", "pytest")  # fmt: skip
+LIBRARIES = "numpy scipy.optimize scipy.integrate numba can cantools pydantic yaml pyarrow typer e2e hypothesis pytest"
 #: CPU time of one mutant's tests, with nothing compiled and compiled, at which they are ended [s].
 LONGEST_S, LONGEST_COMPILED_S = 30, 600
 #: Time on the clock, as a multiple of that.
@@ -147,7 +135,7 @@ def tests_for(file: Path, near: bool = False) -> list[str]:
     Near are those that name the module; where none does, those of its room that are unit tests.
     """
     name = file.relative_to(ROOT / "hilplant").as_posix()
-    words = next(words for room, words in ROOMS.items() if name.startswith(room))
+    words = tuple(next(words for room, words in ROOMS.items() if name.startswith(room)).split())
     module = "hilplant." + name.removesuffix(".py").replace("/", ".")
     written = {path for folder in TESTS for path in (ROOT / "tests" / folder).glob("test_*.py")}
     useful = {path for path in written if not any(word in path.stem for word in TOO_SLOW)}
@@ -242,7 +230,7 @@ def main() -> int:
         print(*(f"{_place(mutant)}: {_change(mutant)}" for mutant in drawn), sep="\n")
         return 0
     os.environ["NUMBA_DISABLE_JIT"] = "1"
-    for library in LIBRARIES:
+    for library in LIBRARIES.split():
         importlib.import_module(library)
     verdicts: list[str] = []
     with tempfile.TemporaryDirectory(prefix="hilplant-mutants-") as folder:

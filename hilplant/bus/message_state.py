@@ -67,7 +67,8 @@ class Outgoing:
     def __init__(self, message: SentMessage) -> None:
         self.message = message
         self.protector = Protector(message.protection) if message.protection else None
-        self.due_ns = message.offset_ns
+        #: Never, for one that is sent when something changes, and then alone.
+        self.due_ns: float = message.offset_ns if message.period_ns else math.inf
         self.last: tuple[float, ...] | None = None
 
     def is_due(self, now_ns: int, values: Sequence[float]) -> bool:
@@ -78,7 +79,7 @@ class Outgoing:
             watched = tuple([values[index] for index in message.on_change])
             changed = watched != self.last
             self.last = watched
-        if message.period_ns and now_ns >= self.due_ns:
+        if now_ns >= self.due_ns:
             late = now_ns - self.due_ns
             self.due_ns += message.period_ns * (1 + late // message.period_ns)
             return True

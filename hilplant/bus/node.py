@@ -77,7 +77,10 @@ class Node:
             self._count("link_down")
         limit = self._settings.frames_per_tick
         limit = max(1, limit // 4) if shed else limit
-        arrivals = self._arrivals(limit, now_ns)
+        if self._emptied_ns is not None and now_ns - self._emptied_ns <= _PUNCTUAL_NS:
+            arrivals = [(frame, now_ns) for frame in self._transport.receive(limit)]
+        else:
+            arrivals = self._late(limit, now_ns)
         for frame, arrived_ns in arrivals:
             if self.observe is not None:
                 self.observe(frame, False)
@@ -91,14 +94,12 @@ class Node:
             self.counts[STATUS_INDEX["missed_frame"]] = self._transport.missed
         self._supervise(now_ns)
 
-    def _arrivals(self, limit: int, now_ns: int) -> list[tuple[Frame, int]]:
-        """Receive frames, and say when each arrived: after a stall by its stamp, else now.
+    def _late(self, limit: int, now_ns: int) -> list[tuple[Frame, int]]:
+        """Receive frames after a stall, and say when each arrived, by its stamp.
 
         It cannot have been before nothing was left to be received; where the stamp says nothing, suppose it was then.
         """
         emptied_ns = self._emptied_ns
-        if emptied_ns is not None and now_ns - emptied_ns <= _PUNCTUAL_NS:
-            return [(frame, now_ns) for frame in self._transport.receive(limit)]
         earliest_ns = -(1 << 62) if emptied_ns is None else emptied_ns
         unknown_ns = now_ns if emptied_ns is None else emptied_ns
         return [
@@ -114,7 +115,7 @@ class Node:
             for outgoing in self._outgoing:
                 if outgoing.is_due(now_ns, values):
                     self._pending.append(self._build(outgoing, values))
-            self._due_ns = min((each.due_ns for each in self._outgoing if each.message.period_ns), default=math.inf)
+            self._due_ns = min([each.due_ns for each in self._outgoing], default=math.inf)
         if self._pending:
             self._flush()
 

@@ -9,7 +9,7 @@ import logging
 import os
 import threading
 from collections import deque
-from typing import Any
+from typing import Any, cast
 
 from hilplant.bus.arrival import waited_ns
 from hilplant.bus.frame import Frame
@@ -72,6 +72,7 @@ class PythonCan:
         self._reopening: _Reopening | None = None
         # what comes back to its sender, in order: a multicast socket is the one interface that does not keep it away
         self._coming_back: deque[Frame] | None = deque(maxlen=256) if is_multicast(arguments) else None
+        self._in_memory = arguments["interface"] == "virtual"
 
     @property
     def up(self) -> bool:
@@ -124,8 +125,11 @@ class PythonCan:
         """Hand a frame over to the driver; one that it does not take now counts as a full queue."""
         if not self._up:
             return SendResult.DOWN
+        message = message_of(frame)
+        if self._in_memory:
+            message.data = cast("bytearray", frame.data)  # bytes are copied in a tenth of the time
         try:
-            self._bus.send(message_of(frame), timeout=0)
+            self._bus.send(message, timeout=0)
         except can.CanError:
             return SendResult.FULL
         except ValueError:

@@ -26,4 +26,4 @@ class LostTime:
             self._before_ns = self._lost_ns if adjoining or self._lost_ns > self._most_ns else 0
             self._lost_ns = 0
             self._next_ns = now_ns + SECOND_NS
-        return max(self._lost_ns, self._before_ns) > self._most_ns
+        return self._lost_ns > self._most_ns or self._before_ns > self._most_ns

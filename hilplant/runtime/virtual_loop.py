@@ -38,7 +38,7 @@ class VirtualLoop(Loop):
         if due_ns < math.inf:
             most = min(most, math.ceil(due_ns / step_ns) - first)
         self._take_inputs(self._node.lost)
-        self._status[:] = self._status_values(self._mode(first * step_ns))
+        self.line[FIRST_STATUS:FIRST_STATE] = self._status_values(self._mode(first * step_ns))
         rows = self._tape.next_rows(most)
         rows[:] = self.line
         taken = self._take(rows)

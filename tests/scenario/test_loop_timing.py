@@ -11,9 +11,14 @@ from support.loop_rig import (
 )
 
 from hilplant.bus.codec import SentMessage
+from hilplant.bus.frame import Frame
 from hilplant.runtime.clock import VirtualClock
+from hilplant.runtime.ring import Ring
+from hilplant.runtime.row import FIRST_STATUS, ROW_WIDTH
 from hilplant.runtime.server import StopRequest, build_loop
 from hilplant.runtime.watchdog import Watchdog
+from hilplant.signals import MODES, STATUS_INDEX
+from hilplant.units import SECOND_NS
 
 
 @pytest.fixture
@@ -52,6 +57,15 @@ def test_late_ticks_are_counted_and_their_periods_skipped_not_stretched(rig: Rig
     assert loop.latency.worst_ns == 7_300_000
 
 
+def test_the_last_row_comes_a_period_after_the_last_tick_and_says_stopped(rig: Rig) -> None:
+    ring = Ring.create(ROW_WIDTH)
+    build_loop(rig.bench, ListedTransport(), VirtualClock(), ring).run(100, StopRequest(), Watchdog())
+    rows = ring.latest(), ring.read_rows()
+    ring.close()
+    assert rows[1][:, 1].tolist() == [tick * STEP_NS for tick in range(100)]
+    assert [rows[0][0], rows[0][FIRST_STATUS + STATUS_INDEX["mode"]]] == [99, MODES.index("stopped")]
+
+
 def test_a_worst_latency_beyond_what_its_frame_carries_is_no_fault(rig: Rig) -> None:
     rig.loop.latency.add(70_000_000)
     rig.tick(201)
@@ -71,6 +85,29 @@ def test_the_bench_decides_what_a_late_tick_leads_to(rig: Rig, policy: str, stop
     loop.run(1000, StopRequest(), Watchdog())
     assert loop.progress.stopped_by_overrun is stops
     assert (loop.progress.ticks < 200) is stops
+
+
+def test_after_a_late_tick_the_loop_is_degraded_for_a_second_and_takes_fewer_frames(rig: Rig) -> None:
+    class LateClock(VirtualClock):
+        def sleep_until_ns(self, deadline_ns: int) -> None:
+            super().sleep_until_ns(deadline_ns)
+            if deadline_ns == 101 * STEP_NS:
+                self.time_ns += 5_000_000
+
+    bench = replace(rig.bench, loop=rig.bench.loop.model_copy(update={"on_overrun": "degrade"}))
+    wire, limits = ListedTransport(), []
+    loop = build_loop(bench, wire, LateClock())
+
+    def receive(limit: int) -> list[Frame]:
+        limits.append(limit)
+        return []
+
+    wire.receive = wire.receive_late = receive  # type: ignore[method-assign, assignment]
+    loop.run(1500, StopRequest(), Watchdog())
+    most = bench.loop.frames_per_tick
+    changes = [tick for tick, (before, after) in enumerate(pairwise(limits), 1) if before != after]
+    assert [limits[0], *(limits[tick] for tick in changes)] == [most, most // 4, most]
+    assert changes[1] - changes[0] == SECOND_NS // STEP_NS
 
 
 def test_the_count_of_ticks_begins_again_where_its_frame_ends(rig: Rig) -> None:

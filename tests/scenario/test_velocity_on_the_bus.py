@@ -126,6 +126,15 @@ def test_silence_of_the_plant_releases_the_relays_and_its_return_starts_anew():
     assert speeds.max() < math.pi + 1.0
 
 
+def test_a_controller_that_leaves_the_bus_sends_the_relays_off_first():
+    drive = Drive("pid")
+    drive.run(1.0)
+    drive.cable.plant.under_way.clear()
+    drive.node.release()
+    relays = [frame for _, frame in drive.cable.plant.under_way if frame.identifier == 0x120]
+    assert [frame.data[0] for frame in relays] == [0]
+
+
 @pytest.mark.parametrize("name", ["pid", "hebb"])
 def test_without_a_speed_sensor_the_observer_holds_the_speed_over_the_bus_all_the_same(name):
     speeds = Drive(name, PERIOD_MS, 0.05, blind=True).run(8.0)

@@ -31,6 +31,7 @@ B = BETWEEN
         (RelayTiming(transfer_ticks=2.0), [0, 1, 1, 1, 0, 0, 0], [0, B, B, 1, B, B, 0]),
         (RelayTiming(bounce_ticks=4.0), [0, 1, 1, 1, 1, 1], [0, 1, B, 1, B, 1]),
         (RelayTiming(operate_ticks=2.0), [0, 1, 0, 0], [0, 0, 0, 0]),  # too short to leave
+        (RelayTiming(operate_ticks=2.0, transfer_ticks=1.0, bounce_ticks=1.0), [0, 1, 0, 0, 0], [0, 0, 0, 0, 0]),
         (RelayTiming(stuck=1.0), [0, 1, 1], [0, 0, 0]),
         (RelayTiming(stuck=2.0), [0, 1, 0], [1, 1, 1]),
     ],
