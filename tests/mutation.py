@@ -28,20 +28,19 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[1]
 #: The rooms, or files, whose code is changed, and the tests that have to notice (names of test files begin so).
 ROOMS = {
-    "models": "models park motor plant networks surrogates dynamics_reduction terminals heat wiper_under",
+    "models": "models park motor plant networks surrogates dynamics_reduction terminals heat linkage_faults obstacles "
+    "wear wiper_under every_fault faults supply warm_stall random_ticks",
     "bus/protection.py": "bus loop mutants",
     "bus/codec.py": "bus mutants",
-    "runtime/loop.py": "loop ring daemon velocity mutants soak",
-    "ecu": "ecu mutants",
+    "runtime/loop.py": "loop ring daemon velocity mutants channel controller faults scenario_on virtual_time fast",
+    "ecu": "ecu mutants velocity wanted shipped faults",
 }
 TESTS = ("unit", "property", "oracle", "scenario")
 #: These compile for other ends, start processes or simulate for minutes: they are not of use here.
 TOO_SLOW = ("in_c", "against_solver", "start", "soak", "daemon", "surrogates_search", "ecu_random_search", "processes")
 LIBRARIES = "numpy scipy.optimize scipy.integrate numba can cantools pydantic yaml pyarrow typer e2e hypothesis pytest"
-#: CPU time of one mutant's tests, with nothing compiled and compiled, at which they are ended [s].
-LONGEST_S, LONGEST_COMPILED_S = 30, 600
-#: Time on the clock, as a multiple of that.
-LONGEST_WAIT = 5
+#: CPU time of one mutant's tests, with nothing compiled and compiled, at which they end [s]; by the clock 5 times that.
+LONGEST_S, LONGEST_COMPILED_S, LONGEST_WAIT = 30, 600, 5
 #: Tests that come to no end have found the mutant if without it they take less than this share of the longest time.
 QUICK_SHARE = 0.25
 KILLED, LIVES, SLOW = "killed", "LIVES", "slow"

@@ -77,7 +77,7 @@ def _collected(value: Any, handler: Callable[[Any], Any], info: ValidationInfo, 
         return draft.hole()
     at = draft.location(value) if draft is not None else None
     before = draft.holes if draft is not None else 0
-    known = set(model.model_fields) if model is not None else set()
+    known = keys_of(model) if model is not None else set()
     try:
         whole = handler(value)
         sound = draft is None or draft.holes == before or model is None or model.holes_inside
@@ -96,6 +96,11 @@ def _collected(value: Any, handler: Callable[[Any], Any], info: ValidationInfo, 
     wrong_keys = {mistake.location[0] for mistake in mistakes if mistake.location}
     right = {key: inner for key, inner in value.items() if key not in wrong_keys}
     return _first_sound(handler, right | dict.fromkeys(wrong_keys & known, HOLE), right)
+
+
+def keys_of(model: type[BaseModel]) -> set[str]:
+    """Return the keys of a group as they stand in a file."""
+    return {field.alias or name for name, field in model.model_fields.items()}
 
 
 def _first_sound(handler: Callable[[Any], Any], *groups: dict[str, Any]) -> Any:

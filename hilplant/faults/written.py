@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
 
-from hilplant.checked_yaml.checked import Checked, NotNegative, Positive, wrong
+from hilplant.checked_yaml.checked import Checked, NotNegative, Positive, keys_of, wrong
 from hilplant.failure import Failure
 from hilplant.faults.catalogue import fault_named
 from hilplant.faults.fault import About
@@ -100,7 +100,7 @@ class FaultEntry(Checked):
 
 
 #: The keys of a fault's course and of what it is about; all others are its quantities, where all are named alike.
-_COURSE = {field.alias or name for name, field in FaultEntry.model_fields.items()} - {"fault", "with"}
+_COURSE = keys_of(FaultEntry) - {"fault", "with"}
 
 
 def entry_named(name: str, keys: Mapping[str, Any]) -> FaultEntry:

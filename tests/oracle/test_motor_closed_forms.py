@@ -1,11 +1,13 @@
 """Cases of the motor that have an answer on paper: no-load speed, blocked rotor, coasting, break-away."""
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
+from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
@@ -52,6 +54,44 @@ def test_a_blocked_motor_is_a_coil_with_a_resistor(name: str) -> None:
         assert motion.current == pytest.approx(13.5 / brush.resistance_ohm * rise, rel=1e-12)
         assert motion.speed == 0.0
         assert motion.turned == 0.0
+
+
+def by_solver(motion: ArmatureMotion, drive: ArmatureDrive, duration: float) -> np.ndarray:
+    """Current, speed and angle by scipy, from zero to zero of the speed; for a shaft that never sticks."""
+
+    def rates(sign: float) -> Callable[[float, np.ndarray], list[float]]:
+        def of(_time: float, at: np.ndarray) -> list[float]:
+            torque = drive.constant * at[0] - drive.damping * at[1] - sign * drive.dry_torque
+            voltage = drive.voltage - drive.resistance * at[0] - drive.constant * at[1]
+            return [voltage / drive.inductance, torque / drive.inertia, at[1]]
+
+        return of
+
+    def zero(_time: float, at: np.ndarray) -> float:
+        return float(at[1])
+
+    zero.terminal = True  # type: ignore[attr-defined]
+    at, now, sign = np.array(motion), 0.0, math.copysign(1.0, motion.speed)
+    while now < duration:
+        found = solve_ivp(
+            rates(sign), (now, duration), at, "DOP853", events=zero, rtol=1e-12, atol=1e-12, max_step=2e-3
+        )
+        at, now, sign = found.y[:, -1], float(found.t[-1]), -sign
+        if now < duration:
+            assert drive.constant * at[0] * sign > drive.dry_torque, "it would stick"
+            at[1] = 1e-12 * sign
+    return at
+
+
+@pytest.mark.parametrize("duration", [0.2, 0.45, 0.7, 0.95])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_swing_through_zero_in_its_second_half_is_not_missed_however_long_the_step(
+    duration: float, way: float
+) -> None:
+    drive = ArmatureDrive(way * 0.5, 0.1, 0.05, 0.2, 4e-3, 0.0, 0.02)  # a coil so large that the speed swings
+    start = ArmatureMotion(way * 2.5, way * 1.5, 0.0)
+    expected = by_solver(start, drive, duration)
+    assert np.array(advance(start, drive, duration)) == pytest.approx(expected, abs=1e-8)
 
 
 def test_it_breaks_away_at_the_instant_of_the_logarithm() -> None:

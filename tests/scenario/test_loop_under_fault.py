@@ -30,13 +30,27 @@ from support.loop_rig import (
 
 from hilplant.bus.frame import Frame
 from hilplant.runtime.clock import VirtualClock
+from hilplant.runtime.commands import BUS, SAFE_STATE
 from hilplant.runtime.loop import SAFE, WAITING
+from hilplant.runtime.row import FIRST_OWNER
 from hilplant.runtime.server import build_loop
 
 
 @pytest.fixture
 def rig() -> Rig:
     return Rig()
+
+
+def test_an_input_is_the_buss_again_in_the_tick_in_which_commands_are_back(rig: Rig) -> None:
+    owners, seen = rig.loop.line[FIRST_OWNER:], []
+    for ticks, every in ((5, 0), (50, 10), (2 * TIMEOUT_TICKS, 0), (50, 10)):
+        for _ in range(ticks):
+            rig.tick(command_every=every)
+            expected = SAFE_STATE if rig.value("mode") in (SAFE, WAITING) else BUS
+            assert {owners[index] for index, _ in rig.bench.safe} == {expected}
+            assert set(owners) <= {expected, BUS}
+            seen += [expected] if seen[-1:] != [expected] else []
+    assert seen == [SAFE_STATE, BUS, SAFE_STATE, BUS]
 
 
 def test_relays_stay_open_until_the_first_command(rig: Rig) -> None:

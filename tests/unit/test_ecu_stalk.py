@@ -41,6 +41,11 @@ def test_a_played_sequence_is_at_each_time_where_it_is_when_asked_once(text: str
     assert [played(time_s) for time_s in times_s] == [stalk_at(turns, time_s) for time_s in times_s]
 
 
+def test_a_time_that_falls_short_of_a_movement_by_rounding_does_not_lose_the_movement() -> None:
+    played = PlayedStalk(parse_stalk("1:slow"))
+    assert [played(time_s).master for time_s in (0.0, 1.0 - 5e-7, 1.1)] == [Master.OFF, Master.OFF, Master.SLOW]
+
+
 def test_a_position_holds_until_the_next_and_is_off_before_the_first():
     turns = parse_stalk("1:slow,6:fast")
     positions = [stalk_at(turns, elapsed_s).master for elapsed_s in (0.0, 0.999, 1.0, 5.9, 6.0, 1e9)]

@@ -150,6 +150,12 @@ def test_a_run_whose_faults_never_come_has_the_bits_of_one_without(tmp_path: Pat
         ("{fault: supply_open, pause: 1}", "needs `for`"),
         ("{fault: supply_open, for: -1}", "for must be greater than 0"),
         ("{fault: supply_open, since: 3}", "unknown key 'since'"),
+        ("{fault: supply_open, fro: 3}", "unknown key 'fro', did you mean 'for'?"),
+        ("{fault: resistance_53, withs: {}}", "unknown key 'withs', did you mean 'with'?"),
+        (
+            "{fault: resistance_53, quantities: {}}",
+            "unknown key 'quantities'; known: at, direction, fault, for",
+        ),
     ],
 )
 def test_a_mistake_in_the_faults_is_told_with_its_line(tmp_path: Path, entry: str, told: str) -> None:
