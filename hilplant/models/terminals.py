@@ -54,7 +54,10 @@ def wired(share: float, driven: float, behind_ohm: float, load_s: float, wire: W
     if total == 0.0:
         return Port(0.0, 0.0, load_s, 0.0)
     from_supply = through * share + wire.to_supply_s
-    load = load_s + through * share * share + wire.to_supply_s - from_supply * from_supply / total
+    # pair by pair, so that a terminal which takes nothing from 30 takes exactly nothing
+    away = 1.0 - share
+    pairs = through * (wire.to_supply_s * away * away + wire.to_ground_s * share * share)
+    load = load_s + (pairs + wire.to_supply_s * wire.to_ground_s) / total
     return Port(from_supply / total, 1.0 / total, load, 1.0)
 
 

@@ -19,7 +19,7 @@ from hilplant.mechanics.wiper import Wiper, WiperSide
 from hilplant.operator_page.scenario_play import known_scenarios
 from hilplant.resources import shipped
 from hilplant.runtime.commands import OWNERS
-from hilplant.signals import ECU_STATUS, INPUTS, OUTPUTS, STATUS
+from hilplant.signals import ECU_RX_INDEX, ECU_STATUS, INPUTS, OUTPUTS, STATUS
 from hilplant.simulation.supply_profiles import load_profile
 from hilplant.units import SECOND_NS, TURN_RAD
 
@@ -40,6 +40,7 @@ def describe(bench: Bench) -> dict[str, Any]:
         "status": [_signal(each) for each in STATUS],
         "owners": list(OWNERS),
         "ecu": {
+            "automatic": any(ECU_RX_INDEX["automatic"] in each.sources for each in bench.ecu_messages.driver),
             "states": list(ECU_STATUS[0].choices),
             "faults": list(ECU_STATUS[1].choices),
             "rows": [

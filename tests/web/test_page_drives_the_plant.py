@@ -40,7 +40,11 @@ def test_the_stalk_moves_the_wiper_and_off_parks_it(page: Page) -> None:
     until(lambda: blade.get_attribute("points") != before)
     page.keyboard.press("s")
     expect(page.locator("#stalk-state")).to_have_text("ECU: slow")
+    page.locator("#stalk-automatic").click()  # a rain sensor that is silent means intermittent
+    expect(page.locator("#stalk-state")).to_have_text("ECU: pause_1")
+    expect(page.locator("#stalk-automatic")).to_have_attribute("aria-pressed", "true")
     page.locator("#stalk-intermittent3").click()
+    expect(page.locator("#stalk-automatic")).to_have_attribute("aria-pressed", "false")
     expect(page.locator("#stalk-state")).to_have_text("ECU: pause_3")
     page.keyboard.press("o")
     expect(page.locator("#stalk-state")).to_have_text("ECU: off")

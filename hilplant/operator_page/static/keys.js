@@ -1,8 +1,8 @@
 // Keys for what an operator does often; none while a field is being filled in.
 import { toggleTheme } from "/shared/theme.js";
 
-const STALK = { o: "off", s: "slow", f: "fast", x: "flick", w: "wash" };
-export const HELP = "Keys: O off, S slow, F fast, X flick, W wash, 1 to 6 intermittent, 0 main power off, P pause, C cursors, L log, T dark or light";
+const STALK = { o: "off", s: "slow", f: "fast", x: "flick", w: "wash", a: "automatic" };
+export const HELP = "Keys: O off, S slow, F fast, X flick, W wash, A automatic, 1 to 6 intermittent, 0 main power off, P pause, C cursors, L log, T dark or light";
 
 export function keys(session, plots) {
   addEventListener("keydown", (event) => {

@@ -8,6 +8,7 @@ export function manual(session) {
   const { inputs, ecu } = session.description;
   const chosen = element("span", { class: "tag", id: "stalk-state", title: "what the ECU says it is doing" }, "ECU: -");
   const buttons = POSITIONS.map(([move, text, key]) => button(move, text, `${text} (${key})`));
+  if (ecu.automatic) buttons.push(button("automatic", "Auto", "the rain sensor chooses; intermittent while it is silent (A)"));
   const pauses = [1, 2, 3, 4, 5, 6].map((number) => button(`intermittent${number}`, String(number), `intermittent, pause ${number} (${number})`));
   const relays = inputs.filter((signal) => signal.name.startsWith("relay_")).map((signal) => new Control(session, signal, signal.name.replace("relay_", "relay ")));
   const note = element("div", { class: "message dim" });
