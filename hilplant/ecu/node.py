@@ -56,6 +56,7 @@ class EcuNode:
         heard = [*_that_carry((_PARK, _CURRENT, _SUPPLY, _RAIN), side.receive), *side.stalk]
         sent = [*_commands(side.send), *side.status]
         self._node = Node(heard, sent, transport, LinkSettings(), [math.nan] * len(ECU_RX))
+        self._node.rehearse(self._said)  # so that its first poll does not hold up a loop on the same processor
 
     @property
     def counts(self) -> list[int]:
