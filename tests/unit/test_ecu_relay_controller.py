@@ -211,6 +211,22 @@ def test_a_fault_is_reported_until_a_sound_turn_or_a_rest_in_park(bench):
     assert bench.fault is Fault.NONE
 
 
+def test_a_turn_is_sound_from_the_time_on_in_which_the_switch_settles():
+    seen = {}
+    for polls in range(round(0.8 * SETTINGS.settle_s / POLL_S), round(1.2 * SETTINGS.settle_s / POLL_S)):
+        bench = Bench()
+        bench.play(0.05, SLOW, True)
+        bench.play(0.05, SLOW, None)
+        assert bench.fault is Fault.PARK_UNKNOWN
+        bench.play(polls * POLL_S, SLOW, False)
+        begin_s = bench.state.turn_s
+        bench.until(lambda bench=bench, begin_s=begin_s: bench.state.turn_s != begin_s, SLOW, True)
+        seen[bench.state.turn_s - begin_s] = bench.fault
+    assert seen[SETTINGS.settle_s] is Fault.NONE
+    assert {fault for turned_s, fault in seen.items() if turned_s > SETTINGS.settle_s} == {Fault.NONE}
+    assert {fault for turned_s, fault in seen.items() if turned_s < SETTINGS.settle_s} == {Fault.PARK_UNKNOWN}
+
+
 def test_a_supply_that_comes_back_is_trusted_only_after_a_while_above_the_higher_threshold(bench):
     bench.play(0.1, SLOW, True, 3.0, 13.5)
     bench.play(0.3, SLOW, False, 3.0, 13.5)
