@@ -6,9 +6,12 @@ import cantools
 import pytest
 
 from hilplant.bench import check_bench, load_bench
+from hilplant.bench.ecu_description import ControllerSettings
+from hilplant.ecu.chart import Phase
 from hilplant.ecu.settings import controller_settings
+from hilplant.ecu.vocabulary import Fault, Master, RelaySettings
 from hilplant.resources import shipped
-from hilplant.signals import ECU_RX, ECU_STATES, ECU_TX_INDEX
+from hilplant.signals import ECU_FAULTS, ECU_RX, ECU_STATES, ECU_TX_INDEX, STALK_POSITIONS
 
 DATABASE = cantools.database.load_file(shipped("dbc", "wiper.dbc"))
 
@@ -97,3 +100,15 @@ def test_a_bench_with_a_database_of_its_own_need_not_have_the_shipped_stalk(tmp_
     assert check_bench(path) == []
     side = load_bench(path).ecu_side()
     assert side.stalk == side.status == ()
+
+
+def test_the_names_on_the_bus_are_those_of_the_controller():
+    assert tuple(phase.value for phase in Phase) == ECU_STATES
+    assert tuple(fault.value for fault in Fault) == ECU_FAULTS
+    assert tuple(position.name.lower() for position in Master) == STALK_POSITIONS
+    assert [position.value for position in Master] == [0, 1, 2, 3], "Master_Input of Figure 8-7"
+
+
+def test_the_benchs_defaults_are_the_controllers():
+    assert set(ControllerSettings.model_fields) == set(RelaySettings._fields)
+    assert controller_settings(ControllerSettings()) == RelaySettings()

@@ -9,8 +9,8 @@ import pytest
 
 from hilplant.declaration import declared
 from hilplant.jit import compiled
-from hilplant.models.records import MotorMemory, State
-from hilplant.models.row import all_finite, changed, guarded, unpack, write
+from hilplant.models.records import Blade, Brush, Friction, MotorMemory, State
+from hilplant.models.row import all_finite, changed, guarded, summed, unpack, write
 from hilplant.signals import Inputs, Outputs
 
 
@@ -58,3 +58,16 @@ def test_a_change_is_by_name_and_leaves_the_rest() -> None:
     changed_in_compiled_code(row, kept)
     assert kept.tolist() == [0.0, 1.0, 2.0, 3.0, 8.0, 7.0]
     assert changed(unpack(MotorMemory, row), Other(7.0, 8.0)) == unpack(MotorMemory, kept)
+
+
+@pytest.mark.parametrize("record", [Brush, Friction, Blade])
+def test_the_sum_is_the_same_compiled_and_tells_each_element_that_changes(record: type[Any]) -> None:
+    in_python = summed.py_func if hasattr(summed, "py_func") else summed
+    in_compiled_code = compiled(lambda row: summed(unpack(record, row)))
+    row = np.arange(1.0, len(declared(record)) + 1.0)
+    whole = in_python(unpack(record, row))
+    assert in_compiled_code(row) == whole
+    for index in range(len(row)):
+        other = row.copy()
+        other[index] += 1e-6
+        assert in_python(unpack(record, other)) == in_compiled_code(other) != whole
