@@ -63,6 +63,23 @@ def test_a_set_value_gives_way_to_the_next_frame_also_if_that_says_the_same(run:
     assert (run.input(SUPPLY_V), run.owner(SUPPLY_V)) == (11.0, "bus")
 
 
+def test_an_override_stands_against_a_controller_in_the_loop_until_it_is_released(run: Run) -> None:
+    def control(_now_ns: int, _state: object, inputs: np.ndarray, _parameters: object) -> bool:
+        inputs[SUPPLY_V] = 12.0
+        return True
+
+    run.loop.control = control
+    run.transport.arrived.append(SLOW)
+    run.tick()
+    assert run.input(SUPPLY_V) == 12.0
+    run.post(c.OVERRIDE, SUPPLY_V, 8.0)
+    run.tick()
+    assert (run.input(SUPPLY_V), run.owner(SUPPLY_V)) == (8.0, "hand")
+    run.post(c.RELEASE, SUPPLY_V)
+    run.tick()
+    assert run.input(SUPPLY_V) == 12.0
+
+
 def test_an_override_stands_against_frames_until_it_is_released(run: Run) -> None:
     run.post(c.OVERRIDE, SUPPLY_V, 8.0)
     run.transport.arrived.append(supply_frame(run))
