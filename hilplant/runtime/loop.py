@@ -214,7 +214,7 @@ class Loop:
     def warm_up(self) -> None:
         """Run every compiled and generated function once, on copies, so that the first tick meets none of them cold."""
         outputs = self._outputs.copy()
-        plant_tick(self._state.copy(), self._inputs.copy(), self._parameters, self._plant.tables, outputs)
+        plant_tick(self._state.copy(), self._plant.input_row.copy(), self._parameters, self._plant.tables, outputs)
         self._node.rehearse([*outputs.tolist(), *([0.0] * len(STATUS))])
 
     def rejected(self) -> dict[str, float]:

@@ -21,6 +21,19 @@ from hilplant.signals import MODES, STATUS_INDEX
 from hilplant.units import SECOND_NS
 
 
+class LateClock(VirtualClock):
+    """Comes so much too late once, at the hundredth tick."""
+
+    def __init__(self, late_ns: int) -> None:
+        super().__init__()
+        self._late_ns = late_ns
+
+    def sleep_until_ns(self, deadline_ns: int) -> None:
+        super().sleep_until_ns(deadline_ns)
+        if deadline_ns == 101 * STEP_NS:
+            self.time_ns += self._late_ns
+
+
 @pytest.fixture
 def rig() -> Rig:
     return Rig()
@@ -44,13 +57,7 @@ def test_each_message_comes_at_the_cycle_time_of_the_database(rig: Rig) -> None:
 
 
 def test_late_ticks_are_counted_and_their_periods_skipped_not_stretched(rig: Rig) -> None:
-    class LateClock(VirtualClock):
-        def sleep_until_ns(self, deadline_ns: int) -> None:
-            super().sleep_until_ns(deadline_ns)
-            if deadline_ns == 101 * STEP_NS:
-                self.time_ns += 7_300_000
-
-    loop = build_loop(rig.bench, ListedTransport(), LateClock())
+    loop = build_loop(rig.bench, ListedTransport(), LateClock(7_300_000))
     loop.run(1000, StopRequest(), Watchdog())
     assert loop.progress.overruns == 7
     assert loop.progress.ticks == 993
@@ -74,29 +81,17 @@ def test_a_worst_latency_beyond_what_its_frame_carries_is_no_fault(rig: Rig) -> 
 
 @pytest.mark.parametrize(("policy", "stops"), [("count", False), ("degrade", False), ("stop", True)])
 def test_the_bench_decides_what_a_late_tick_leads_to(rig: Rig, policy: str, stops: bool) -> None:
-    class LateClock(VirtualClock):
-        def sleep_until_ns(self, deadline_ns: int) -> None:
-            super().sleep_until_ns(deadline_ns)
-            if deadline_ns == 101 * STEP_NS:
-                self.time_ns += 5_000_000
-
     bench = replace(rig.bench, loop=rig.bench.loop.model_copy(update={"on_overrun": policy}))
-    loop = build_loop(bench, ListedTransport(), LateClock())
+    loop = build_loop(bench, ListedTransport(), LateClock(5_000_000))
     loop.run(1000, StopRequest(), Watchdog())
     assert loop.progress.stopped_by_overrun is stops
     assert (loop.progress.ticks < 200) is stops
 
 
 def test_after_a_late_tick_the_loop_is_degraded_for_a_second_and_takes_fewer_frames(rig: Rig) -> None:
-    class LateClock(VirtualClock):
-        def sleep_until_ns(self, deadline_ns: int) -> None:
-            super().sleep_until_ns(deadline_ns)
-            if deadline_ns == 101 * STEP_NS:
-                self.time_ns += 5_000_000
-
     bench = replace(rig.bench, loop=rig.bench.loop.model_copy(update={"on_overrun": "degrade"}))
     wire, limits = ListedTransport(), []
-    loop = build_loop(bench, wire, LateClock())
+    loop = build_loop(bench, wire, LateClock(5_000_000))
 
     def receive(limit: int) -> list[Frame]:
         limits.append(limit)
