@@ -2,10 +2,11 @@
 
 python tests/mutation.py --mutants 100 --seed 1 [--room models] [--near]
 
-Works on a copy of the checkout. Each mutant is tried first with nothing compiled, in a fork of a process that has the
-libraries loaded: most are killed within seconds. Where that comes to no end in time, it is tried compiled, in a new
-process; where all tests pass, also on those that Python is too slow for. The same seed and number give the same
-mutants of the same code. Each that lives is printed with file, line and change, to be killed by a test or argued to
+Works on a copy of the checkout. A mutant of the models is tried first with nothing compiled, in a fork of a process
+that has the libraries loaded: most are killed within seconds. Where that comes to no end in time, it is tried compiled,
+in a new process; where all tests pass, also on those that Python is too slow for. Other code is never compiled: its
+mutants run at once with the models compiled as they are. The same seed and number give the same mutants of the same
+code. Each that lives is printed with file, line and change, to be killed by a test or argued to
 change nothing. One whose compiled tests come to no end is killed only where the same tests without it take a fraction
 of that time; else it is slow, not counted. Exit code 1 when a mutant lives or is slow.
 """
@@ -26,6 +27,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
+MODELS = ROOT / "hilplant" / "models"
 #: The rooms, or files, whose code is changed, and the tests that have to notice (names of test files begin so).
 ROOMS = {
     "models": "models park motor plant networks surrogates dynamics_reduction terminals heat linkage_faults obstacles "
@@ -40,10 +42,12 @@ TESTS = ("unit", "property", "oracle", "scenario")
 LEFT_OUT = ("start", "soak", "daemon", "surrogates_search", "ecu_random_search", "processes")
 COMPILED = ("in_c", "against_solver")
 LIBRARIES = "numpy scipy.optimize scipy.integrate numba can cantools pydantic yaml pyarrow typer e2e hypothesis pytest"
-#: CPU time of one mutant's tests, with nothing compiled and compiled, at which they end [s]; by the clock 5 times that.
-LONGEST_S, LONGEST_COMPILED_S, LONGEST_WAIT = 30, 600, 5
+#: CPU time of one mutant's tests at which they end [s], with nothing compiled, with a mutant compiled, with the models
+#: compiled as they are; by the clock 5 times that.
+LONGEST_S, LONGEST_COMPILED_S, LONGEST_AS_THEY_ARE_S, LONGEST_WAIT = 30, 600, 240, 5
 #: Tests that come to no end have found the mutant if without it they take less than this share of the longest time.
 QUICK_SHARE = 0.25
+CACHE = "compiled"
 KILLED, LIVES, SLOW = "killed", "LIVES", "slow"
 _COMPARE = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq}
 _ARITHMETIC = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.BitAnd: ast.BitOr}
@@ -157,10 +161,10 @@ class Copy:
         self._clean: dict[tuple[str, ...], Trial] = {}
         shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(".*", "__pycache__"))
 
-    def clean(self, tests: list[str]) -> Trial:
+    def clean(self, tests: list[str], longest_s: int) -> Trial:
         """Run tests without a change, compiled, once for all."""
         if tuple(tests) not in self._clean:
-            self._clean[tuple(tests)] = _ran(tests, self._folder, compiled=True)
+            self._clean[tuple(tests)] = _ran(tests, self._folder, longest_s)
         return self._clean[tuple(tests)]
 
     def verdict(self, mutant: Mutant, tests: list[str], turn: int) -> str:
@@ -169,22 +173,30 @@ class Copy:
         whole = changed.read_text(encoding="utf-8")
         changed.write_text(mutant.text, encoding="utf-8")
         os.utime(changed, (turn, turn))  # compiled bytes of an earlier turn are known as old
+        is_model = MODELS in mutant.file.parents
+        longest_s = LONGEST_COMPILED_S if is_model else LONGEST_AS_THEY_ARE_S
         try:
-            slow = [test for test in tests if any(word in test for word in COMPILED)]
-            trial = _ran([test for test in tests if test not in slow], self._folder, compiled=False)
-            if not trial.ended or (trial.passed and slow):
-                trial = _ran(slow if trial.passed else tests, self._folder, compiled=True)
+            trial = self._model_tried(tests) if is_model else _ran(tests, self._folder, longest_s)
         finally:
             changed.write_text(whole, encoding="utf-8")
         if trial.ended:
             return LIVES if trial.passed else KILLED
-        clean = self.clean(tests)
+        clean = self.clean(tests, longest_s)
         return KILLED if clean.passed and clean.share < QUICK_SHARE else SLOW
 
+    def _model_tried(self, tests: list[str]) -> Trial:
+        slow = [test for test in tests if any(word in test for word in COMPILED)]
+        trial = _ran([test for test in tests if test not in slow], self._folder, LONGEST_S, compiled=False)
+        if trial.ended and not (trial.passed and slow):
+            return trial
+        try:
+            return _ran(slow if trial.passed else tests, self._folder, LONGEST_COMPILED_S)
+        finally:  # what was compiled of this mutant is of use to no other
+            shutil.rmtree(self._folder.parent / CACHE, ignore_errors=True)
 
-def _ran(tests: list[str], copy: Path, compiled: bool) -> Trial:
-    """Run tests in a fork; compiled, in a new process, with compiled code of its own."""
-    longest_s = LONGEST_COMPILED_S if compiled else LONGEST_S
+
+def _ran(tests: list[str], copy: Path, longest_s: int, compiled: bool = True) -> Trial:
+    """Run tests in a fork; compiled, in a new process, with what is compiled beside the copy."""
     child = os.fork()
     if child == 0:
         os.setsid()
@@ -197,9 +209,7 @@ def _ran(tests: list[str], copy: Path, compiled: bool) -> Trial:
             os.dup2(silence, number)
         options = ["-q", "-x", "-p", "no:cacheprovider", "-m", "not vcan and not browser", "-o", "timeout=0", *tests]
         if compiled:
-            cache = copy.parent / "compiled"
-            shutil.rmtree(cache, ignore_errors=True)
-            os.environ |= {"NUMBA_DISABLE_JIT": "0", "XDG_CACHE_HOME": str(cache)}
+            os.environ |= {"NUMBA_DISABLE_JIT": "0", "XDG_CACHE_HOME": str(copy.parent / CACHE)}
             os.execv(sys.executable, [sys.executable, "-m", "pytest", *options])
         os._exit(int(importlib.import_module("pytest").main(options)))
     begin_s, broken_off = time.monotonic(), False
@@ -236,7 +246,7 @@ def main() -> int:
         copy = Copy(Path(folder) / "copy")
         tests_of = {mutant.file: tests_for(mutant.file, options.near) for mutant in drawn}  # those that the copy has
         for tests in tests_of.values() if options.check else ():
-            if not (trial := copy.clean(tests)).passed:
+            if not (trial := copy.clean(tests, LONGEST_COMPILED_S)).passed:
                 how = "fail" if trial.ended else "come to no end"
                 sys.exit(f"these {how} without a mutant: {' '.join(tests)}")
         for turn, mutant in enumerate(drawn, 1):

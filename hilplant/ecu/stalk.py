@@ -128,7 +128,7 @@ class PlayedStalk:
         return self._stalk
 
 
-def moved(stalk: Stalk, move: Move, ago_s: float) -> Stalk:
+def moved(stalk: Stalk, move: Move, ago_s: float = 0.0) -> Stalk:
     """Return the stalk some time [s] after a movement."""
     if move.press is not None:
         pressed = ago_s < PRESSES_S[move.press]
@@ -172,7 +172,7 @@ class TypedStalk:
             return
         if move.press is not None:
             self._presses[move.press] = elapsed_s
-        self._stalk = moved(self._stalk, move._replace(press=None), 0.0)
+        self._stalk = moved(self._stalk, move._replace(press=None))
         self._answer(f"stalk: {move.press or stalk_words(self._stalk)}")
 
 

@@ -60,7 +60,7 @@ class StalkOnBus:
             self._sender = StalkSender(self._bench.ecu_messages.driver, open_transport(self._bench.interface))
         if move.press is not None:
             self._pressed_until_s[move.press] = _now_s() + PRESSES_S[move.press]
-        self._stalk = moved(self._stalk, move._replace(press=None), 0.0)
+        self._stalk = moved(self._stalk, move._replace(press=None))
         self._send(self._sender)
 
     async def work(self) -> None:

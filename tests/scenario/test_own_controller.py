@@ -17,6 +17,7 @@ from hilplant.cli.main import app
 from hilplant.control import catalogue
 from hilplant.control.own import OwnSeat, Watch
 from hilplant.control.records import Measured
+from hilplant.ecu import controller_choice
 from hilplant.ecu.controller_choice import ControllerChoice, Driven, controller_file, own_maker, seat_on_bus
 from hilplant.failure import Failure
 from hilplant.resources import shipped
@@ -72,6 +73,18 @@ def test_a_call_over_its_budget_stops_the_controller_for_good():
     assert slow.decide(0.001, SEEN) == (9.0, 1.0) or slow.stopped
     assert "took 600 us of processor time, more than its budget of 500 us" in slow.stopped
     assert slow.decide(0.002, SEEN) == (0.0, 0.0)
+
+
+def test_a_budget_that_nobody_gives_is_half_of_the_period(module: Any, monkeypatch: pytest.MonkeyPatch):
+    spent = iter(range(0, 10**9, 600_000))
+    monkeypatch.setattr(controller_choice, "thread_cpu_ns", lambda: next(spent))
+    monkeypatch.setattr(controller_choice, "thread_cpu_step_ns", lambda: 0)
+    name = module("in_half", "def make(motor, period_s):\n    return lambda reference, measured: (7.0, False)\n")
+    slow, quick = (seat_on_bus(ControllerChoice(name, lambda _: 1.0), Driven(MOTOR, at)) for at in (0.001, 0.0013))
+    for made in (slow, quick):
+        made.decide(0.0, SEEN)
+    assert "took 600 us of processor time, more than its budget of 500 us" in slow.stopped
+    assert not quick.stopped
 
 
 @pytest.mark.parametrize(("shown_ms", "stopped"), [(10, False), (20, True)])
@@ -228,6 +241,13 @@ def test_a_package_offers_its_controller_by_an_entry_point(
     monkeypatch.syspath_prepend(str(tmp_path))
     made = seat_on_bus(ControllerChoice("offered", lambda _: 1.0), DRIVEN)
     assert made.decide(0.0, SEEN).voltage_v == 7.0
+    with pytest.raises(Failure, match=r"no controller 'offred'; .*; of packages offered; as files .*gentle_pi"):
+        seat_on_bus(ControllerChoice("offred", lambda _: 1.0), DRIVEN)
+
+
+def test_where_no_package_offers_a_controller_none_is_spoken_of():
+    with pytest.raises(Failure, match=r"no controller 'nope'; .*, each also with _sensorless; as files"):
+        seat_on_bus(ControllerChoice("nope", lambda _: 1.0), DRIVEN)
 
 
 def test_a_file_is_the_catalogue_s_controller_with_its_own_gains():

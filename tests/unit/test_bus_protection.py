@@ -190,6 +190,8 @@ def test_the_free_nibble_beside_a_short_counter_stays_free() -> None:
         ({"profile": 4, "data_id": 1}, "header of 12 bytes, which does not fit in a frame of 8 bytes at offset 0"),
         ({"profile": 5, "offset": 6}, "header of 3 bytes, which does not fit in a frame of 8 bytes at offset 6"),
         ({"profile": 2, "data_id": 7}, "profile 2 needs data_id_list"),
+        ({"profile": 2, "data_id_list": [1] * 16, "data_id": 7}, "profile 2 has .* data_id_list instead of data_id"),
+        ({"profile": 2, "data_id_list": [1] * 16, "offset": 1}, "profile 2 has its header at offset 0"),
         ({"profile": 2, "data_id_list": [1, 2]}, "profile 2 needs data_id_list, a list of 16"),
         ({"profile": 2, "data_id_list": [300] * 16}, "list of 16 whole numbers from 0 to 255"),
         ({"profile": 1, "data_id_list": [1] * 16}, "data_id_list is for profile 2"),
@@ -203,5 +205,6 @@ def test_wrong_settings_are_refused_with_what_would_be_right(settings: dict[str,
 
 
 def test_settings_of_a_bench_become_a_protection() -> None:
-    settings = {"profile": 2, "data_id_list": list(range(16)), "max_delta_counter": 2}
-    assert Protection.from_settings(settings, 8) == Protection(2, 8, data_id_list=bytes(range(16)), max_delta_counter=2)
+    settings = {"profile": 2, "data_id_list": list(range(240, 256)), "max_delta_counter": 2}
+    identities = bytes(range(240, 256))
+    assert Protection.from_settings(settings, 8) == Protection(2, 8, data_id_list=identities, max_delta_counter=2)

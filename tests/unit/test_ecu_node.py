@@ -1,6 +1,7 @@
 """The ECU on a bus that the test holds in its hands: what it sends when, and what silence does to it."""
 
 import sys
+from dataclasses import replace
 
 import pytest
 from support.ecu_seat import (
@@ -15,16 +16,19 @@ from support.ecu_seat import (
     TIMEOUT_NS,
     Seat,
     motor,
+    received,
+    side,
 )
 
 from hilplant.bench.ecu_side import EcuSide
 from hilplant.bus.frame import Frame
 from hilplant.cli.actions import ecu as command
 from hilplant.ecu.chart import Phase
-from hilplant.ecu.node import EcuReport, run_ecu
-from hilplant.ecu.vocabulary import Fault, Master, Stalk
+from hilplant.ecu.node import EcuNode, EcuReport, run_ecu
+from hilplant.ecu.vocabulary import Fault, Master, RelaySettings, Stalk
 from hilplant.runtime.clock import VirtualClock
-from hilplant.units import MILLISECOND_NS
+from hilplant.signals import STATUS_INDEX
+from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 
 @pytest.fixture
@@ -66,6 +70,15 @@ def test_silence_of_other_messages_and_foreign_frames_do_not_matter(seat):
     seat.wire.arriving += [Frame(0x7FF, b"junk"), Frame(512, b"\x01\x00"), Frame(513, b"\x00\x00", remote=True)]
     assert RUN in seat.poll(SLOW, OPEN, 300)
     assert seat.poll(SLOW, OPEN, 20) == [RUN]
+
+
+def test_what_has_nothing_for_the_ecu_is_not_even_read(seat):
+    other = received("Supply", Volts="crank_speed_rad_s")
+    heard = side()
+    seat.node = EcuNode(replace(heard, receive=(*heard.receive, other)), seat.wire, RelaySettings())
+    seat.wire.arriving.append(Frame(257, b"\x00"))
+    seat.poll(OFF, CLOSED)
+    assert seat.node.counts[STATUS_INDEX["wrong_length"]] == 0, "a frame that is too short is counted where it is read"
 
 
 def test_the_motors_current_is_heard_and_a_stall_ends_the_drive(seat):
@@ -151,6 +164,19 @@ def test_the_loop_polls_by_its_clock_and_releases_the_relays_when_told_to_stop_o
     with pytest.raises(KeyboardInterrupt):
         run_ecu(seat.node, breaks, VirtualClock(), lambda: False)
     assert seat.wire.sent[0] == REST
+
+
+def test_the_stalk_is_asked_by_the_time_since_the_start_whatever_the_clock_shows_then(seat):
+    clock, asked, reports = VirtualClock(), [], []
+    clock.sleep_until_ns(7 * SECOND_NS)
+    seat.node.report = reports.append
+    run_ecu(seat.node, lambda at_s: asked.append(at_s) or SLOW, clock, lambda: len(asked) == 3)
+    assert asked == [report.time_s for report in reports] == [0.0, 0.005, 0.01]
+
+
+def test_leaving_gives_the_interface_back(seat):
+    seat.node.close()
+    assert seat.wire.closed
 
 
 def test_the_bench_says_how_often_the_ecu_decides(tmp_path, monkeypatch):

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from hilplant.ecu.chart import Phase
@@ -151,12 +152,14 @@ def test_driving_without_park_ends_after_its_timeout_whatever_the_stalk_does(ben
 def test_it_tries_three_times_with_a_pause_and_then_is_locked_out_until_the_stalk_is_put_off(bench):
     bench.play(0.0, SLOW, True)
     bench.play(0.1, SLOW, False)
-    starts = 1
+    drives, was_on = [bench.now_s], True
     for _ in range(round(60.0 / POLL_S)):
-        was_on = bench.relays.on
         bench.play(0.0, SLOW, False)
-        starts += bench.relays.on and not was_on
-    assert starts == SETTINGS.tries
+        drives += [bench.now_s] if bench.relays.on is not was_on else []
+        was_on = bench.relays.on
+    lasted_s = np.diff(drives)
+    assert lasted_s[::2][1:] == pytest.approx([SETTINGS.turn_timeout_s] * (SETTINGS.tries - 1), abs=2 * POLL_S)
+    assert lasted_s[1::2] == pytest.approx([SETTINGS.retry_pause_s] * (SETTINGS.tries - 1), abs=2 * POLL_S)
     assert bench.state.phase is Phase.LOCKOUT
     assert bench.play(30.0, FAST, False) == RELAYS_OFF
     bench.play(0.0, OFF, False)
@@ -181,6 +184,15 @@ def test_a_high_current_is_a_stall_only_when_it_stays(bench):
     assert bench.fault is Fault.STALL
 
 
+def test_a_warm_motors_stall_is_a_current_above_its_own_threshold_for_its_own_time():
+    seat = Bench(RelaySettings(warm_stall_current_a=4.0, warm_stall_s=0.5))
+    seat.play(0.1, SLOW, True)
+    assert seat.play(2.0, SLOW, False, current_a=4.0).on
+    took_s = seat.until(lambda: not seat.relays.on, SLOW, False, 4.01)
+    assert took_s == pytest.approx(0.5, abs=2 * POLL_S)
+    assert seat.fault is Fault.STALL
+
+
 def test_a_fault_is_reported_until_a_sound_turn_or_a_rest_in_park(bench):
     bench.play(0.05, SLOW, True)
     bench.play(0.05, SLOW, None)
@@ -194,6 +206,18 @@ def test_a_fault_is_reported_until_a_sound_turn_or_a_rest_in_park(bench):
     assert bench.fault is Fault.PARK_UNKNOWN
     bench.play(8 * POLL_S, OFF, True)
     assert bench.fault is Fault.NONE
+
+
+def test_where_the_wiper_rests_with_an_open_contact_a_fault_is_over_after_a_rest_there():
+    seat = Bench(RelaySettings(rests_open=True))
+    seat.play(1.0, SLOW, None)
+    for _ in range(2):  # a turn that is too short to be sound, from outside the window
+        assert seat.play(0.2 * SETTINGS.settle_s, OFF, False).on
+        seat.play(0.0, OFF, True)
+    assert seat.fault is Fault.PARK_UNKNOWN
+    took_s = seat.until(lambda: seat.fault is Fault.NONE, OFF, False)
+    assert not seat.relays.on
+    assert took_s == pytest.approx(SETTINGS.settle_s, abs=2 * POLL_S)
 
 
 def test_a_turn_is_sound_from_the_time_on_in_which_the_switch_settles():

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import cantools
 import pytest
+from support.wire import Wire
 
 from hilplant.bench import Bench, load_bench
 from hilplant.bus.in_memory import InMemoryBus
@@ -78,6 +79,12 @@ def test_a_stalk_is_sent_when_it_changes_and_at_its_cycle_time_and_not_else(benc
         sender.act(at * MILLISECOND_NS, Stalk(Master.SLOW if at >= 130 else Master.OFF))
         sent += [(at, frame.data) for frame in ear.receive(10)]
     assert [at for at, _ in sent] == [0, 100, 130, 200]
+
+
+def test_leaving_gives_the_interface_back(bench: Bench) -> None:
+    wire = Wire()
+    StalkSender(bench.ecu_messages.driver, wire).close()
+    assert wire.closed
 
 
 def test_the_shipped_database_reads_what_the_hand_sends() -> None:
