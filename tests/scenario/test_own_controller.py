@@ -12,15 +12,12 @@ from support.driven_wiper import in_the_loop, mean_of_turns, on_the_bus
 from typer.testing import CliRunner
 
 from hilplant.bench import load_bench
-from hilplant.checked_yaml.problems import BenchError
 from hilplant.cli.main import app
-from hilplant.control import catalogue
 from hilplant.control.own import OwnSeat, Watch
 from hilplant.control.records import Measured
 from hilplant.ecu import controller_choice
-from hilplant.ecu.controller_choice import ControllerChoice, Driven, controller_file, own_maker, seat_on_bus
+from hilplant.ecu.controller_choice import ControllerChoice, Driven, own_maker, seat_on_bus
 from hilplant.failure import Failure
-from hilplant.resources import shipped
 from hilplant.runtime.clock import thread_cpu_ns, thread_cpu_step_ns, thread_waits
 
 MOTOR = load_bench("default").parameters.motor
@@ -203,7 +200,10 @@ def test_the_daemon_opens_the_relays_says_why_and_ends_with_1(module: Any, tmp_p
     [
         ("no_such_module_here:make", "No module named"),
         ("math:nothing", "has no attribute 'nothing'"),
-        ("nope", "there is no controller 'nope'; there are pid, .*gentle_pi.*module:function"),
+        (
+            "nope",
+            "no controller 'nope'; there are pid, .*with _sensorless; as files .*gentle_pi.*module:function",
+        ),
     ],
 )
 def test_a_name_that_means_nothing_is_told_in_one_line(name: str, told: str):
@@ -243,34 +243,3 @@ def test_a_package_offers_its_controller_by_an_entry_point(
     assert made.decide(0.0, SEEN).voltage_v == 7.0
     with pytest.raises(Failure, match=r"no controller 'offred'; .*; of packages offered; as files .*gentle_pi"):
         seat_on_bus(ControllerChoice("offred", lambda _: 1.0), DRIVEN)
-
-
-def test_where_no_package_offers_a_controller_none_is_spoken_of():
-    with pytest.raises(Failure, match=r"no controller 'nope'; .*, each also with _sensorless; as files"):
-        seat_on_bus(ControllerChoice("nope", lambda _: 1.0), DRIVEN)
-
-
-def test_a_file_is_the_catalogue_s_controller_with_its_own_gains():
-    made = controller_file(shipped("config", "controllers", "error_hebb_k_1.yaml")).controller(*DRIVEN)
-    assert made == catalogue.with_stages(catalogue.neuron(MOTOR, 0.001, "error_hebb", 1.0), MOTOR)
-    gentle = controller_file(shipped("config", "controllers", "gentle_pi.yaml")).controller(*DRIVEN)
-    assert (gentle.pid.integral, gentle.stages.up_v, gentle.stages.hold_s) == (17.7, 17.0, 0.3)
-    assert gentle.stages.down_v == pytest.approx(15.0 * 3.412 / 4.579)
-
-
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        ("pid: {proportional: 1, integral: -1}", "integral must be greater than or equal to 0"),
-        ("pid: {proportional: 1, integral: 1}\ncascade: {speed_rate: 1, current_rate: 2}", "give one of pid, neuron"),
-        ("highest_v: 12", "give one of pid, neuron and cascade, not none"),
-        ("pid: {proportional: 1, integral: 1}\nstages: {up_v: 12, back_v: 13}", "back_v must be below up_v"),
-        ("neuron: {rule: hebbian, gain: 1}", "rule must be 'hebb', 'error_hebb' or 'quadratic'"),
-        ("pid: {proportional: 1, integral: 1}\nlowest_v: 9\nhighest_v: 9", "lowest_v must be below highest_v"),
-    ],
-)
-def test_a_mistake_in_a_file_is_named_with_its_line(tmp_path: Path, text: str, told: str):
-    path = tmp_path / "mine.yaml"
-    path.write_text(f"name: mine\nsource: a test\nstatus: assumed\n{text}\n")
-    with pytest.raises(BenchError, match=rf"mine.yaml:\d+.*{told}"):
-        controller_file(path)

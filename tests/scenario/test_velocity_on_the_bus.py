@@ -70,9 +70,9 @@ class Drive:
         self.cable = Cable(delay, loss)
         motor = BENCH.parameters.motor
         controller = controller_named(name + ("_sensorless" if blind else ""), motor, PERIOD_NS / SECOND_NS)
-        seat = Seat(controller, without_network(), lambda _: math.pi)
+        self.seat = Seat(controller, without_network(), lambda _: math.pi)
         side = BENCH.ecu_side()
-        self.node = VelocityNode(side, self.cable.controller, seat)
+        self.node = VelocityNode(side, self.cable.controller, self.seat)
         self.loop = build_loop(BENCH, self.cable.plant, VirtualClock())
         self.loop._node.values[INPUT_INDEX["screen"]] = 1.0
         self.speeds: list[float] = []
@@ -116,6 +116,7 @@ def test_silence_of_the_plant_releases_the_relays_and_its_return_starts_anew():
     drive.run(2.0)
     drive.cable.cut = True
     drive.run(1.0)
+    assert drive.seat.memory == Drive("cascade").seat.memory, "nothing is left of the time before"
     assert drive.speeds[-1] == pytest.approx(0.0, abs=1e-6)
     drive.cable.cut = False
     drive.node.poll(drive.cable.now * MILLISECOND_NS)
@@ -192,11 +193,17 @@ def test_a_bench_that_does_not_tell_the_speed_is_refused():
 def test_the_node_polls_at_its_period_and_releases_the_relays_at_the_end():
     drive = Drive("pid")
     times: list[float] = []
-    drive.node.report = lambda report: times.append(report.time_s)
+    status = [message for message in BENCH.send if message.name in ("MotorStatus", "ParkSwitch")]
+
+    def report(told: VelocityReport) -> None:
+        times.append(told.time_s)
+        drive.cable.controller.under_way += [(0, Frame(each.identifier, bytes(each.length))) for each in status]
+
+    drive.node.report = report
     run_velocity_node(drive.node, VirtualClock(), lambda: len(times) == 50, PERIOD_NS)
     assert np.diff(times) == pytest.approx(PERIOD_NS / SECOND_NS)
-    last = [frame for _, frame in drive.cable.plant.under_way if frame.identifier == 0x120][-1]
-    assert last.data[:1] == b"\x00"
+    *_, before, last = [frame.data[0] for _, frame in drive.cable.plant.under_way if frame.identifier == 0x120]
+    assert before and not last
 
 
 @pytest.mark.parametrize(("late_ms", "next_ms"), [(9, 50), (10, 50), (11, 51), (35, 75), (40, 80)])

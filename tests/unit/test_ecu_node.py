@@ -22,12 +22,13 @@ from support.ecu_seat import (
 
 from hilplant.bench.ecu_side import EcuSide
 from hilplant.bus.frame import Frame
+from hilplant.bus.node import Node
 from hilplant.cli.actions import ecu as command
 from hilplant.ecu.chart import Phase
 from hilplant.ecu.node import EcuNode, EcuReport, run_ecu
 from hilplant.ecu.vocabulary import Fault, Master, RelaySettings, Stalk
 from hilplant.runtime.clock import VirtualClock
-from hilplant.signals import STATUS_INDEX
+from hilplant.signals import ECU_TX, STATUS_INDEX
 from hilplant.units import MILLISECOND_NS, SECOND_NS
 
 
@@ -172,6 +173,13 @@ def test_the_stalk_is_asked_by_the_time_since_the_start_whatever_the_clock_shows
     seat.node.report = reports.append
     run_ecu(seat.node, lambda at_s: asked.append(at_s) or SLOW, clock, lambda: len(asked) == 3)
     assert asked == [report.time_s for report in reports] == [0.0, 0.005, 0.01]
+
+
+def test_its_messages_are_rehearsed_before_the_first_poll(monkeypatch):
+    rehearsed = []
+    monkeypatch.setattr(Node, "rehearse", lambda node, values: rehearsed.append(values[:]))
+    Seat()
+    assert rehearsed == [[signal.default for signal in ECU_TX]]
 
 
 def test_leaving_gives_the_interface_back(seat):
