@@ -44,6 +44,8 @@ def test_it_tries_three_times_with_a_pause_and_then_is_locked_out_until_the_stal
     assert bench.play(30.0, FAST, False) == RELAYS_OFF
     bench.play(0.0, OFF, False)
     assert bench.until(lambda: bench.relays.on, SLOW, False) < 0.1
+    took_s = bench.until(lambda: not bench.relays.on, SLOW, False)
+    assert took_s == pytest.approx(SETTINGS.turn_timeout_s, abs=2 * POLL_S), "all of the time of a turn"
 
 
 def test_minutes_of_wiping_with_a_sound_park_switch_are_no_fault(bench):
@@ -86,6 +88,14 @@ def test_a_fault_is_reported_until_a_sound_turn_or_a_rest_in_park(bench):
     assert bench.fault is Fault.PARK_UNKNOWN
     bench.play(8 * POLL_S, OFF, True)
     assert bench.fault is Fault.NONE
+
+
+def test_a_contact_that_bounces_at_rest_begins_the_rest_anew(bench):
+    bench.play(0.05, SLOW, None)
+    bench.play(SETTINGS.settle_s - 4 * POLL_S, OFF, True)
+    bench.play(0.0, OFF, False)
+    took_s = bench.until(lambda: bench.fault is Fault.NONE, OFF, True)
+    assert took_s == pytest.approx(SETTINGS.settle_s, abs=2 * POLL_S)
 
 
 def test_where_the_wiper_rests_with_an_open_contact_a_fault_is_over_after_a_rest_there():
