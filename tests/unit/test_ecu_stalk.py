@@ -106,11 +106,22 @@ def test_typed_lines_move_the_stalk_and_nonsense_is_answered_without_moving_it()
     os.write(writer, b"Fast\ni3\nflick\n")
     assert stalk(3.0) == Stalk(Master.INTERMITTENT, 3, flick=True)
     os.close(writer)
-    assert stalk(4.0) == Stalk(Master.INTERMITTENT, 3)
+    assert stalk(3.0 + 0.9 * PRESSES_S["flick"]).flick and not stalk(4.0).flick
     assert stalk(5.0) == Stalk(Master.INTERMITTENT, 3)
     os.close(reader)
     assert answers == ["stalk: slow", answers[1], "stalk: fast", "stalk: intermittent 3", "stalk: flick"]
     assert answers[1].startswith("stalk: type one of off, ")
+
+
+@pytest.mark.parametrize("word", PRESSES_S)
+def test_a_typed_button_is_released_after_its_time(word: str):
+    reader, writer = os.pipe()
+    stalk = TypedStalk(reader, lambda _: None)
+    os.write(writer, word.encode() + b"\n")
+    pressed = [getattr(stalk(at_s), word) for at_s in (0.0, PRESSES_S[word] - 1e-9, PRESSES_S[word])]
+    assert pressed == [True, True, False]
+    os.close(writer)
+    os.close(reader)
 
 
 def test_a_line_that_comes_in_pieces_counts_when_it_is_whole_and_the_last_at_the_end_of_the_file():
