@@ -90,19 +90,25 @@ def test_the_bench_decides_what_a_late_tick_leads_to(rig: Rig, policy: str, stop
 
 def test_after_a_late_tick_the_loop_is_degraded_for_a_second_and_takes_fewer_frames(rig: Rig) -> None:
     bench = replace(rig.bench, loop=rig.bench.loop.model_copy(update={"on_overrun": "degrade"}))
-    wire, limits = ListedTransport(), []
-    loop = build_loop(bench, wire, LateClock(5_000_000))
+    wire, limits, ring = ListedTransport(), [], Ring.create(ROW_WIDTH)
+    loop = build_loop(bench, wire, LateClock(5_000_000), ring)
 
     def receive(limit: int) -> list[Frame]:
         limits.append(limit)
         return []
 
     wire.receive = wire.receive_late = receive  # type: ignore[method-assign, assignment]
+    loop._node._supervised.clear()  # nobody waits for commands here
+    loop._node.lost = False
     loop.run(1500, StopRequest(), Watchdog())
     most = bench.loop.frames_per_tick
     changes = [tick for tick, (before, after) in enumerate(pairwise(limits), 1) if before != after]
     assert [limits[0], *(limits[tick] for tick in changes)] == [most, most // 4, most]
     assert changes[1] - changes[0] == SECOND_NS // STEP_NS
+    modes, late_us = ring.read_rows()[:, FIRST_STATUS + STATUS_INDEX["mode"]], ring.late_us(len(limits) + 1).tolist()
+    ring.close()
+    assert [tick for tick, mode in enumerate(modes) if MODES[int(mode)] == "degraded"] == list(range(*changes))
+    assert [tick for tick, late in enumerate(late_us) if late] == changes[:1] and max(late_us) == 5000
 
 
 def test_the_count_of_ticks_begins_again_where_its_frame_ends(rig: Rig) -> None:

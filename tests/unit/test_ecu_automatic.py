@@ -31,6 +31,8 @@ def test_less_rain_lowers_one_stage_after_each_hold() -> None:
     hold = SETTINGS.rain_hold_s
     assert after(RainStage(8), 0.0, hold - 0.02).stage == 8
     assert after(RainStage(8), 0.0, hold + 0.02).stage == 7
+    begun = choose_stage(RainStage(8), 0.0, 1.0, SETTINGS)
+    assert [choose_stage(begun, 0.0, 1.0 + hold + late, SETTINGS).stage for late in (-1e-9, 0.0)] == [8, 7]
     assert after(RainStage(8), 0.0, 8.0 * hold + 0.2).stage == 0
     dipped = choose_stage(after(RainStage(8), 0.0, hold - 0.1), 0.9, hold - 0.05, SETTINGS)
     assert after(dipped, 0.0, hold - 0.1, hold).stage == 8  # a short look at much rain begins the hold anew

@@ -1,6 +1,7 @@
 """The driver's hand: what can be written, what is refused and how, and what a terminal may type."""
 
 import os
+import select
 
 import pytest
 
@@ -111,6 +112,13 @@ def test_typed_lines_move_the_stalk_and_nonsense_is_answered_without_moving_it()
     os.close(reader)
     assert answers == ["stalk: slow", answers[1], "stalk: fast", "stalk: intermittent 3", "stalk: flick"]
     assert answers[1].startswith("stalk: type one of off, ")
+
+
+def test_nobody_waits_for_a_line_that_is_not_typed(monkeypatch):
+    waits = []
+    monkeypatch.setattr(select, "select", lambda *asked: waits.append(asked[3]) or ([], [], []))
+    assert TypedStalk(0, lambda _: None)(1.0) == Stalk()
+    assert waits == [0.0]
 
 
 @pytest.mark.parametrize("word", PRESSES_S)
