@@ -62,6 +62,14 @@ def test_the_window_that_a_wiper_passes_as_it_leaves_is_not_taken_for_its_return
         assert seat.relays == (DRIVE if arrival < arrivals else RELAYS_OFF)
 
 
+@pytest.mark.parametrize(("polls", "comes_to_park"), [(8, False), (9, True)])
+def test_a_contact_that_was_open_for_as_long_as_it_may_bounce_has_been_away(polls, comes_to_park):
+    seat = Mind(RelaySettings(debounce_s=8 * POLL_S))
+    seat.play(0.05, SLOW, True)
+    seat.play(polls * POLL_S, OFF, False)
+    assert seat.play(0.0, OFF, True) == (RELAYS_OFF if comes_to_park else DRIVE)
+
+
 @pytest.mark.parametrize("edges", [3, 6, 10])
 @pytest.mark.parametrize("window_s", [0.5, 1.0, 2.0])
 def test_as_many_edges_within_a_window_are_bounces_and_one_less_in_each_is_wiping(edges, window_s):

@@ -8,6 +8,7 @@ import pytest
 from support.wire import Wire
 
 from hilplant.bench import Bench, load_bench
+from hilplant.bus.frame import Frame
 from hilplant.bus.in_memory import InMemoryBus
 from hilplant.ecu.node import EcuNode, EcuReport
 from hilplant.ecu.settings import controller_settings
@@ -79,6 +80,13 @@ def test_a_stalk_is_sent_when_it_changes_and_at_its_cycle_time_and_not_else(benc
         sender.act(at * MILLISECOND_NS, Stalk(Master.SLOW if at >= 130 else Master.OFF))
         sent += [(at, frame.data) for frame in ear.receive(10)]
     assert [at for at, _ in sent] == [0, 100, 130, 200]
+
+
+def test_what_others_say_does_not_pile_up_at_the_hand_s_interface(bench: Bench) -> None:
+    wire = Wire()
+    wire.arriving = [Frame(0x7FF, b"junk")] * 3
+    StalkSender(bench.ecu_messages.driver, wire).act(0, Stalk())
+    assert not wire.arriving
 
 
 def test_leaving_gives_the_interface_back(bench: Bench) -> None:
