@@ -12,12 +12,13 @@ from support.loop_rig import (
 
 from hilplant.bus.codec import SentMessage
 from hilplant.bus.frame import Frame
+from hilplant.runtime import loop as loop_module
 from hilplant.runtime.clock import VirtualClock
 from hilplant.runtime.ring import Ring
 from hilplant.runtime.row import FIRST_STATUS, ROW_WIDTH
 from hilplant.runtime.server import StopRequest, build_loop
 from hilplant.runtime.watchdog import Watchdog
-from hilplant.signals import MODES, STATUS_INDEX
+from hilplant.signals import MODES, PUBLISHED, STATUS_INDEX
 from hilplant.units import SECOND_NS
 
 
@@ -118,3 +119,12 @@ def test_the_count_of_ticks_begins_again_where_its_frame_ends(rig: Rig) -> None:
     assert ticks[0] == 2**32 - 60
     assert ticks[-1] == 100 - 60
     assert rig.counts() == {}
+
+
+def test_the_warm_up_calls_what_a_tick_calls_and_changes_nothing(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+    stepped, rehearsed = [], []
+    monkeypatch.setattr(loop_module, "plant_tick", lambda *arguments: stepped.append(arguments[0]))
+    monkeypatch.setattr(rig.loop._node, "rehearse", lambda values: rehearsed.append(len(values)))
+    rig.loop.warm_up()
+    assert len(stepped) == 1 and stepped[0] is not rig.loop._state
+    assert rehearsed == [len(PUBLISHED)]
