@@ -127,17 +127,6 @@ def test_silence_of_the_plant_releases_the_relays_and_its_return_starts_anew():
     assert speeds.max() < math.pi + 1.0
 
 
-def test_a_park_contact_that_no_message_carries_counts_as_open():
-    side, told = BENCH.ecu_side(), []
-    contact = ECU_RX_INDEX["park_contact"]
-    without = tuple(message for message in side.receive if contact not in message.targets)
-    seat = Seat(controller_named("pid", BENCH.parameters.motor, 0.01), without_network(), lambda _: 3.0)
-    node = VelocityNode(replace(side, receive=without), Cable(0, 0.0).controller, seat)
-    node.report = told.append
-    node.poll(0)
-    assert [report.measured.park_contact for report in told] == [0.0]
-
-
 def test_a_controller_that_leaves_the_bus_sends_the_relays_off_first():
     drive = Drive("pid")
     drive.run(1.0)
@@ -148,18 +137,6 @@ def test_a_controller_that_leaves_the_bus_sends_the_relays_off_first():
     assert not any(sent.pop(identifier).strip(b"\0") for identifier in list(sent)), "and no supply"
     drive.node.close()
     assert drive.cable.controller.closed
-
-
-def test_a_speed_is_measured_once_by_the_frame_that_carries_it():
-    bench_side, wire, told = BENCH.ecu_side(), Wire(), []
-    seat = Seat(controller_named("pid", BENCH.parameters.motor, 0.01), without_network(), lambda _: 3.0)
-    node = VelocityNode(bench_side, wire, seat)
-    node.report = lambda report: told.append(report.measured.speed_rad_s)
-    speed, park = (next(m for m in BENCH.send if name in m.name) for name in ("MotorStatus", "Park"))
-    for now_ms, frames in enumerate(([speed, park], [park], [speed], [], [])):
-        wire.arriving = [Frame(message.identifier, bytes(message.length)) for message in frames]
-        node.poll(now_ms * MILLISECOND_NS)
-    assert np.isfinite(told).tolist() == [True, False, True, False, False]
 
 
 @pytest.mark.parametrize("name", ["pid", "hebb"])

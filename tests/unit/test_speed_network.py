@@ -85,8 +85,9 @@ def test_a_network_of_another_motor_is_refused_with_the_remedy() -> None:
 def test_mistakes_around_the_network_are_named(tmp_path: Path, text: str, said: str) -> None:
     shutil.copy(FILE, tmp_path / "estimator.yaml")
     (tmp_path / "edited.yaml").write_text(FILE.read_text().replace("seed: 1", "seed: 2"))
-    with pytest.raises(BenchError, match=said):
+    with pytest.raises(BenchError, match=said) as told:
         controller_file(written(tmp_path, text))
+    assert len(told.value.problems) == 1
 
 
 def test_training_data_are_the_ones_that_training_uses(monkeypatch: pytest.MonkeyPatch) -> None:
