@@ -205,6 +205,6 @@ def test_wrong_settings_are_refused_with_what_would_be_right(settings: dict[str,
 
 
 def test_settings_of_a_bench_become_a_protection() -> None:
-    settings = {"profile": 2, "data_id_list": list(range(240, 256)), "max_delta_counter": 2}
-    identities = bytes(range(240, 256))
+    identities = bytes([0, *range(241, 256)])
+    settings = {"profile": 2, "data_id_list": list(identities), "max_delta_counter": 2}
     assert Protection.from_settings(settings, 8) == Protection(2, 8, data_id_list=identities, max_delta_counter=2)
