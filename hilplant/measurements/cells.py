@@ -10,15 +10,20 @@ NOTHING = frozenset(("", "-", "--", "nan", "na", "n/a", "#n/a", "#nv", "null", "
 _YES = dict.fromkeys(("true", "yes", "on", "ja", "ein", "wahr", "high", "closed"), 1.0)
 _TRUTH = _YES | dict.fromkeys(("false", "no", "off", "nein", "aus", "falsch", "low", "open"), 0.0)
 _THOUSANDS = {
-    ",": re.compile(r"[-+]?\d{1,3}(\.\d{3})+(,\d*)?"),
-    ".": re.compile(r"[-+]?\d{1,3}(,\d{3})+(\.\d*)?"),
+    ",": re.compile(r"[-+]?[1-9]\d{0,2}(\.\d{3})+(,\d*)?"),
+    ".": re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?"),
 }
+#: Apostrophes and narrow, thin, fixed or plain blanks between thousands.
+_BLANKS = re.compile(r"['\u2019\u202f\u2009\u00a0 ]")
+_SPACED = re.compile(rf"[-+]?[1-9]\d{{0,2}}({_BLANKS.pattern}\d{{3}})+([.,]\d*)?")
 _HEX = re.compile(r"0[xX][0-9A-Fa-f]+")
 _DATE = re.compile(
     r"(?:(?P<first>\d{1,4})[-./](?P<month>\d{1,2})[-./](?P<last>\d{1,4})[T ,;]+)?"
     r"(?P<hour>\d{1,2}):(?P<minute>\d{2})(?::(?P<second>\d{2})(?:[.,:](?P<part>\d+))?)?"
     r"\s*(?P<half>[AaPp][Mm])?\s*(?P<zone>Z|[-+]\d{2}:?\d{2})?"
 )
+#: Minutes and seconds, as a spreadsheet shows the time of a measurement.
+_MINUTES = re.compile(r"(?P<minute>\d{1,3}):(?P<second>[0-5]\d[.,]\d+)")
 _UNITS = {
     "second": "s", "seconds": "s", "sec": "s", "secs": "s", "sekunde": "s", "sekunden": "s",
     "millisecond": "ms", "milliseconds": "ms", "msec": "ms", "microsecond": "us", "microseconds": "us",
@@ -44,6 +49,8 @@ def is_unit(written: str) -> bool:
 
 def moment_of(cell: str) -> tuple[int, float] | None:
     """Return a date as a number of days, 0 for a time without one, and the seconds of the day; None for neither."""
+    if short := _MINUTES.fullmatch(cell.strip()):
+        return 0, 60.0 * int(short["minute"]) + float(short["second"].replace(",", "."))
     found = _DATE.fullmatch(cell.strip())
     if found is None:
         return None
@@ -73,6 +80,8 @@ def number_of(cell: str, decimal: str) -> float | None:
         return _TRUTH[word]
     if _HEX.fullmatch(plain):
         return float(int(plain, 16))
+    if _SPACED.fullmatch(plain):
+        plain = _BLANKS.sub("", plain)
     if _THOUSANDS[decimal].fullmatch(plain):
         plain = plain.replace("." if decimal == "," else ",", "")
     elif decimal == "," and "." in plain:
@@ -81,6 +90,11 @@ def number_of(cell: str, decimal: str) -> float | None:
         return float(plain.replace(decimal, ".")) if "_" not in plain else None
     except ValueError:
         return None
+
+
+def in_thousands(cell: str, decimal: str) -> bool:
+    """Say whether a cell is one to three digits and three more behind the sign that is not the decimal one."""
+    return bool(_THOUSANDS[decimal].fullmatch(cell)) and len(re.findall(r"[.,]", cell)) == 1
 
 
 def kind_of(cell: str, decimal: str) -> str:

@@ -6,8 +6,13 @@ from hilplant.measurements.measurement import Channel
 
 
 class Channels(dict[str, Channel]):
-    """Channels by name; `notes` say what of the file was skipped, cut off or put in order."""
+    """Channels by name; `notes` say what of the file was skipped, cut off or put in order.
 
-    def __init__(self, channels: Mapping[str, Channel], notes: Sequence[str] = ()) -> None:
+    `texts` are columns that are no channels because they hold text, with what stands in their first row.
+    """
+
+    def __init__(
+        self, channels: Mapping[str, Channel], notes: Sequence[str] = (), texts: Mapping[str, str] | None = None
+    ) -> None:
         super().__init__(channels)
-        self.notes = tuple(notes)
+        self.notes, self.texts = tuple(notes), dict(texts or {})

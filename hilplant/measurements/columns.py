@@ -106,8 +106,17 @@ def has_unit(role: str, unit: str) -> bool:
     return unit_of(unit) in _SCALES.get(ROLES[role], {})
 
 
-def choose_columns(given: Mapping[str, Column], names: Mapping[str, Channel], source: str) -> dict[str, Column]:
-    """Return the column of each role: as given, else by a known name.
+def text_columns(texts: Mapping[str, str]) -> str:
+    """Return how a sentence about columns ends where some were left out because they hold text."""
+    return (
+        "; text, no numbers: " + ", ".join(f"{name} ('{text[:40]}')" for name, text in texts.items()) if texts else ""
+    )
+
+
+def choose_columns(
+    given: Mapping[str, Column], names: Mapping[str, Channel], source: str, texts: Mapping[str, str] | None = None
+) -> dict[str, Column]:
+    """Return the column of each role: as given, else by a known name; `texts` are columns that hold no numbers.
 
     Raises
     ------
@@ -120,7 +129,8 @@ def choose_columns(given: Mapping[str, Column], names: Mapping[str, Channel], so
         name = _name_in_file(column.name, names)
         if name is None:
             near = suggestion(column.name, names)
-            raise Failure(f"{source}: has no column '{column.name}' for the {role}{near}")
+            left_out = text_columns(texts or {})
+            raise Failure(f"{source}: has no column '{column.name}' for the {role}{near}{left_out}")
         chosen[role] = column._replace(name=name)
     taken = {column.name for column in chosen.values()}
     for role, known in KNOWN_NAMES.items():
@@ -131,6 +141,7 @@ def choose_columns(given: Mapping[str, Column], names: Mapping[str, Channel], so
         example = ",".join(f"{role}=NAME" for role in missing)
         raise Failure(
             f"{source}: no column for {' and '.join(missing)}; say --columns {example} with one of {', '.join(names)}"
+            f"{text_columns(texts or {})}"
         )
     return chosen
 

@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from hilplant.measurements.cells import is_unit, kind_of, unit_of
+from hilplant.measurements.cells import in_thousands, is_unit, kind_of, unit_of
 
 #: Separator and decimal sign, in the order in which they are tried; the first of equals is taken.
 WRITINGS = ((",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", ","), ("|", "."), (" ", "."))
@@ -26,7 +26,8 @@ _EQUALS = re.compile(r"\s*(?P<name>[A-Za-z_0-9 ]+?)\s*=\s*(?P<value>[-+]?[0-9.]+
 class Layout(NamedTuple):
     """`kinds` are those of the columns: number, date, text or "" for one that is empty.
 
-    `clock` is start and distance of the samples [s] where the head says them.
+    `clock` is start and distance of the samples [s] where the head says them; `texts` are columns of text with what
+    stands in their first row.
     """
 
     separator: str
@@ -36,16 +37,21 @@ class Layout(NamedTuple):
     units: tuple[str, ...]
     kinds: tuple[str, ...]
     clock: tuple[float, float] | None
+    texts: dict[str, str]
 
 
 class _Rows(NamedTuple):
     first: int
     matching: int
     kinds: tuple[str, ...]
+    doubtful: int  # columns whose numbers look as if the other decimal sign were meant
 
 
 def layout_of(head: Sequence[str]) -> Layout | None:
-    """Find the writing that gives the most numbers and least text; None where there is no table."""
+    """Find the writing that gives the most numbers and least text; None where there is no table.
+
+    Where both decimal signs fit, as for 1,250 beside 12,500, that one is taken which leaves fewer columns doubtful.
+    """
     best, most = None, (0, 0, 0)
     for separator, decimal in WRITINGS:
         lines = list(split(head, separator))
@@ -53,23 +59,30 @@ def layout_of(head: Sequence[str]) -> Layout | None:
         if rows is None:
             continue
         numbers = sum(kind in ("number", "date") for kind in rows.kinds)
-        size = rows.matching * numbers, -rows.kinds.count("text"), 0
+        size = rows.matching * numbers, -rows.kinds.count("text"), -rows.doubtful
         if numbers and size > most:
             names, units, clock = _header(lines[: rows.first], lines[rows.first :], rows.kinds)
-            best, most = Layout(separator, decimal, rows.first, names, units, rows.kinds, clock), size
+            cells = zip(names, rows.kinds, lines[rows.first], strict=True)
+            texts = {name: cell for name, kind, cell in cells if kind == "text"}
+            best, most = Layout(separator, decimal, rows.first, names, units, rows.kinds, clock, texts), size
     return best
 
 
 def split(lines: Sequence[str], separator: str) -> list[list[str]]:
-    """Split lines into cells, quoted ones too; each line by itself."""
+    """Split lines into cells, quoted ones too; each line by itself. Blanks separate as one, however many."""
     found = []
-    for line in lines:
+    for line in map(with_single_blanks, lines) if separator == " " else lines:
         try:
             cells = next(csv.reader([line], delimiter=separator, skipinitialspace=separator != " "), [])
         except csv.Error:
             cells = line.split(separator)
         found.append([cell.strip() for cell in cells])
     return found
+
+
+def with_single_blanks(text: str) -> str:
+    """Return lines without blanks at their ends, and with one blank where there are more."""
+    return re.sub(r"(?m)^ +| +$", "", re.sub(" {2,}", " ", text))
 
 
 def _rows(lines: list[list[str]], decimal: str) -> _Rows | None:
@@ -79,16 +92,44 @@ def _rows(lines: list[list[str]], decimal: str) -> _Rows | None:
     width = max(widths, key=lambda each: (widths[each], each))
     same = [(place, cells) for place, cells in enumerate(lines) if len(cells) == width]
     stride = max(1, len(same) // SAMPLED)
-    kinds = []
+    kinds, doubtful = [], 0
     for column in range(width):
-        seen = Counter(kind_of(cells[column], decimal) for _, cells in same[::stride])
+        cells = [cells[column] for _, cells in same[::stride]]
+        seen = Counter(kind_of(cell, decimal) for cell in cells)
         empty = seen.pop("", 0)
         common = max(seen, key=lambda kind: (seen[kind], kind != "text"), default="")
         kinds.append(common if seen[common] * 10 > empty else "")
+        doubtful += kinds[-1] == "number" and _doubtful(cells, decimal)
     matching = [place for place, cells in same if _fits(cells, kinds, decimal)]
     if not matching or not {"number", "date"} & set(kinds):
         return None
-    return _Rows(matching[0], len(matching), tuple(kinds))
+    kinds = [kind or _sparse_kind(same, matching[0], at, decimal) for at, kind in enumerate(kinds)]
+    return _Rows(matching[0], len(matching), tuple(kinds), doubtful)
+
+
+def _doubtful(cells: list[str], decimal: str) -> bool:
+    """Say whether the other decimal sign is the likelier one for a column of numbers.
+
+    As thousands, where each number is as 12,345: a table with three decimals. As decimals, where some are so and all
+    others are below a thousand and have none: a table whose thousands are marked.
+    """
+    written = [cell for cell in cells if any(sign.isdigit() for sign in cell)]
+    marked = [cell for cell in written if in_thousands(cell, decimal)]
+    if marked:
+        return len(marked) == len(written)
+    other = "." if decimal == "," else ","
+    marked = [cell for cell in written if in_thousands(cell, other)]
+    return (
+        bool(marked)
+        and all(cell in marked or cell.lstrip("+-").isdecimal() for cell in written)
+        and (len(marked) < len(written))
+    )
+
+
+def _sparse_kind(same: list[tuple[int, list[str]]], first: int, column: int, decimal: str) -> str:
+    """Return the kind of a column that is mostly empty, as of a signal that is written when it changes."""
+    kinds = {kind_of(cells[column], decimal) for place, cells in same if place >= first} - {""}
+    return "number" if kinds == {"number"} else ""
 
 
 def _fits(cells: list[str], kinds: list[str], decimal: str) -> bool:
@@ -119,7 +160,7 @@ def _header(
             elif cells[0].lower() == "horizontal units" and len(cells) > 1:
                 units[0] = unit_of(cells[1])
     names = lines[-1] if lines and len(lines[-1]) >= width - (rows[0][-1] == "") and len(lines[-1]) > 1 else []
-    names = _wide(names, width)
+    names = _wide(names[1:] if names[:1] == ["#"] else names, width)  # a comment's sign is no column
     found = [_name_and_unit(name, unit) for name, unit in zip(names, units, strict=True)]
     named = [name or f"column{index + 1}" for index, (name, _) in enumerate(found)]
     unique = [name if named.index(name) == index else f"{name}.{index + 1}" for index, name in enumerate(named)]

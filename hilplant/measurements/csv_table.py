@@ -12,10 +12,14 @@ from pyarrow import csv
 from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.measurements.cells import moment_of, number_of
-from hilplant.measurements.csv_layout import Layout, layout_of
+from hilplant.measurements.csv_layout import Layout, layout_of, with_single_blanks
 
 #: Lines in which header, separator and decimal sign are looked for, and characters of one line that are looked at.
 _HEAD_LINES, _LONGEST_LINE = 5000, 20_000
+#: Characters in which that many lines are looked for.
+_LONGEST_HEAD = 10_000_000
+#: A quoted cell of two to four short lines.
+_BROKEN = re.compile(r'(?m)(?:^|(?<=[,;\t|]))"[^"\n]{0,100}(?:\n[^"\n]{0,100}){1,3}"(?=[,;\t|\n])')
 _ROW = re.compile(r"Row #(\d+)")
 _COLUMN = re.compile(r"CSV column #(\d+)")
 
@@ -23,13 +27,15 @@ _COLUMN = re.compile(r"CSV column #(\d+)")
 class Table(NamedTuple):
     """Columns by name, their units as written ("" for none), and the line number of the first row of numbers.
 
-    `clock` is start and distance of the samples [s] where the head says them.
+    `clock` is start and distance of the samples [s] where the head says them; `texts` are columns that are left out
+    because they hold text, with what stands in their first row.
     """
 
     columns: dict[str, Floats]
     units: dict[str, str]
     first_line: int
-    clock: tuple[float, float] | None = None
+    clock: tuple[float, float] | None
+    texts: dict[str, str]
 
 
 def read_csv(path: Path) -> Table:
@@ -43,14 +49,15 @@ def read_csv(path: Path) -> Table:
         Naming the line that is wrong.
 
     """
-    text = _decoded(path.read_bytes())
-    head = [line[:_LONGEST_LINE].rstrip("\r\n") for _, line in zip(range(_HEAD_LINES), io.StringIO(text), strict=False)]
+    text = _unbroken(_decoded(path.read_bytes()))
+    head = [line[:_LONGEST_LINE] for line in text[:_LONGEST_HEAD].split("\n")[:_HEAD_LINES]]
     if not any(head):
         raise Failure(f"{path}: is empty")
     layout = layout_of(head)
     if layout is None:
         raise Failure(f"{path}: no table of numbers found in its first {len(head)} lines; separators are , ; | and tab")
-    content = text.encode()
+    content = (with_single_blanks(text) if layout.separator == " " else text).encode()
+    del text  # of a long file, each copy counts
     kinds = {name: kind for name, kind in zip(layout.names, layout.kinds, strict=True) if kind in ("number", "date")}
     as_text = {name for name, kind in kinds.items() if kind == "date"}
     while True:  # each round finds one more column that pyarrow cannot read as numbers
@@ -72,7 +79,7 @@ def read_csv(path: Path) -> Table:
             columns[name] = np.asarray(cells.to_numpy(), np.float64)
     units = dict(zip(layout.names, layout.units, strict=True))
     units |= {name: "s" for name in kinds if kinds[name] == "date"}
-    return Table(columns, units, layout.first_row + 1, layout.clock)
+    return Table(columns, units, layout.first_row + 1, layout.clock, layout.texts)
 
 
 def _decoded(content: bytes) -> str:
@@ -91,6 +98,14 @@ def _decoded(content: bytes) -> str:
             continue
     text = content.decode(encodings[-1], "replace") if text is None else text
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _unbroken(text: str) -> str:
+    """Return a text whose quoted names have blanks for line breaks; empty lines before it keep the count of lines."""
+    head = text[:_LONGEST_LINE]
+    joined = _BROKEN.sub(lambda found: found[0].replace("\n", " "), head)
+    breaks = head.count("\n") - joined.count("\n")
+    return "\n" * breaks + joined + text[_LONGEST_LINE:] if breaks else text
 
 
 def _parsed(content: bytes, layout: Layout, as_text: set[str]) -> pa.Table:

@@ -10,7 +10,7 @@ import numpy as np
 
 from hilplant.failure import Failure
 from hilplant.measurements.channels import Channels
-from hilplant.measurements.columns import KNOWN_NAMES, Column, clock_of, has_unit, unit_scale
+from hilplant.measurements.columns import KNOWN_NAMES, Column, clock_of, has_unit, text_columns, unit_scale
 from hilplant.measurements.frames import FrameSource
 from hilplant.measurements.measurement import Channel
 
@@ -114,8 +114,8 @@ def _csv(origin: Origin) -> Channels:
     clock = clock_of(origin.time) or (None if origin.time or _time_of(columns, units) else table.clock)
     if clock is not None:
         count = len(next(iter(columns.values())))
-        return _on_one_clock(clock[0] + clock[1] * np.arange(count), columns, units)
-    return _table(origin, columns, units, table.first_line)
+        return Channels(_on_one_clock(clock[0] + clock[1] * np.arange(count), columns, units), (), table.texts)
+    return Channels(_table(origin, columns, units, table.first_line, table.texts), (), table.texts)
 
 
 def _parquet(origin: Origin) -> Channels:
@@ -144,12 +144,16 @@ def _numbers(values: Any) -> tuple[Any, bool]:
     return np.where(np.isnat(since), np.nan, since.astype(np.int64) * 1e-9), True
 
 
-def _table(origin: Origin, columns: Mapping[str, Any], units: Mapping[str, str], first_line: int) -> Channels:
+def _table(
+    origin: Origin, columns: Mapping[str, Any], units: Mapping[str, str], first_line: int, texts: Mapping[str, str] = {}
+) -> Channels:
     """Take the time out of a table, in seconds; rows without a time are an error."""
     column = origin.time or _time_of(columns, units)
     if column is None or column.name not in columns:
         wanted = f"'{column.name}'" if column else "for the time"
-        text = f"no column {wanted}; say --columns time=NAME[unit] with one of {', '.join(columns)}"
+        text = (
+            f"no column {wanted}; say --columns time=NAME[unit] with one of {', '.join(columns)}{text_columns(texts)}"
+        )
         raise Failure(f"{origin.path}: {text}")
     unit = column.unit if column.unit is not None else units.get(column.name, "")
     place = f"{origin.path}, column '{column.name}'"
@@ -168,7 +172,14 @@ def _time_of(columns: Mapping[str, Any], units: Mapping[str, str]) -> Column | N
 
 
 def _on_one_clock(time_s: Any, columns: Mapping[str, Any], units: Mapping[str, str]) -> Channels:
-    return Channels({name: Channel(time_s, values, units.get(name, "")) for name, values in columns.items()})
+    return Channels({name: _whole(Channel(time_s, each, units.get(name, ""))) for name, each in columns.items()})
+
+
+def _whole(channel: Channel) -> Channel:
+    """Take a column of two values whose cells are empty but where it changes as held until the next one."""
+    there = channel.values[np.isfinite(channel.values)]
+    at_changes = 0 < len(there) < len(channel.values) and set(there.tolist()) <= {0.0, 1.0} and np.all(np.diff(there))
+    return replace(channel, held=True) if at_changes else channel
 
 
 def _mf4(origin: Origin) -> Channels:

@@ -10,6 +10,7 @@ from hilplant.arrays import Flags, Floats
 from hilplant.failure import Failure
 from hilplant.measurements.alignment import current_shift
 from hilplant.measurements.baseline import Correction, corrected
+from hilplant.measurements.channels import Channels
 from hilplant.measurements.columns import Column, choose_columns, has_unit, unit_scale
 from hilplant.measurements.files import Origin, read_channels, sha256
 from hilplant.measurements.measurement import Channel, Measurement, Native
@@ -61,7 +62,8 @@ def prepare(
 ) -> Measurement:
     """Bring channels onto one clock and into SI units; correct offset and shift, flag outliers, filter."""
     roles = {role: column for role, column in columns.items() if role != "time"}
-    chosen = choose_columns(roles, channels, source)
+    texts = channels.texts if isinstance(channels, Channels) else {}
+    chosen = choose_columns(roles, channels, source, texts)
     chosen.pop("time", None)
     raw: dict[str, Channel] = {}
     native: dict[str, Native] = {}
