@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from hilplant.arrays import Flags, Floats
+from hilplant.arrays import Flags, Floats, Whole
 
 #: The window about a step in which the current's answer is looked at [s].
 BEFORE_S, AFTER_S = 0.025, 0.04
@@ -57,16 +57,26 @@ def voltage_steps(voltage_v: Floats, period_s: float) -> list[int]:
     height = STEP_PART * float(np.ptp(voltage_v))
     candidates = np.flatnonzero(jump > height) + 1
     before, after = round(BEFORE_S / period_s), round(AFTER_S / period_s)
+    candidates = candidates[(candidates > before) & (candidates + after < len(voltage_v))]
+    spreads = np.maximum(
+        _spreads(voltage_v, candidates - before, before - 1), _spreads(voltage_v, candidates + 1, after - 1)
+    )
     steps = []
-    for index in candidates:
-        if index < before + 1 or index + after >= len(voltage_v):
-            continue
+    for index in candidates[~(spreads >= 0.11 * float(np.ptp(voltage_v)))]:  # ripple has many that are none
         left, right = voltage_v[index - before : index - 1], voltage_v[index + 1 : index + after]
         level = float(np.median(right) - np.median(left))
         still = max(float(np.std(left)), float(np.std(right)))
         if abs(level) > height and still < 0.1 * abs(level):
             steps.append(int(index))
     return [step for place, step in enumerate(steps) if place == 0 or step - steps[place - 1] > 2]
+
+
+def _spreads(values: Floats, begins: Whole, count: int) -> Floats:
+    """Return the standard deviation of `count` values from each of some places on."""
+    about = values - np.mean(values)
+    sums, squares = (np.concatenate([[0.0], np.cumsum(about**power)]) for power in (1, 2))
+    means, seconds = ((total[begins + count] - total[begins]) / count for total in (sums, squares))
+    return np.asarray(np.sqrt(np.maximum(seconds - means**2, 0.0)), np.float64)
 
 
 def current_shift(current_a: Floats, voltage_v: Floats, period_s: float) -> DelayEstimate | None:
