@@ -1,5 +1,6 @@
 """CAN frames of a log -> channels, through a bus database or through the mapping of a bench."""
 
+import shlex
 from collections import defaultdict
 from pathlib import Path
 
@@ -106,7 +107,7 @@ def _refuse_several_buses(path: Path, messages: dict[Key, _Message], source: Fra
         if len(message.buses) > 1:
             buses = sorted(message.buses)
             text = f"{message.reader.message} (0x{identifier:X}) comes on channels {' and '.join(buses)}"
-            raise Failure(f"{path}: {text}; say which one: --frames {source}@{buses[0]}")
+            raise Failure(f"{path}: {text}; say which one: --frames {shlex.quote(f'{source}@{buses[0]}')}")
 
 
 def _skips(messages: dict[Key, _Message]) -> list[str]:

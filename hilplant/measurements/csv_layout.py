@@ -91,15 +91,10 @@ def _rows(lines: list[list[str]], decimal: str) -> _Rows | None:
         return None
     width = max(widths, key=lambda each: (widths[each], each))
     same = [(place, cells) for place, cells in enumerate(lines) if len(cells) == width]
-    stride = max(1, len(same) // SAMPLED)
-    kinds, doubtful = [], 0
-    for column in range(width):
-        cells = [cells[column] for _, cells in same[::stride]]
-        seen = Counter(kind_of(cell, decimal) for cell in cells)
-        empty = seen.pop("", 0)
-        common = max(seen, key=lambda kind: (seen[kind], kind != "text"), default="")
-        kinds.append(common if seen[common] * 10 > empty else "")
-        doubtful += kinds[-1] == "number" and _doubtful(cells, decimal)
+    columns = [[cells[column] for _, cells in same] for column in range(width)]
+    kinds = [kind_of_column(cells, decimal) for cells in columns]
+    numbers = [cells for cells, kind in zip(columns, kinds, strict=True) if kind == "number"]
+    doubtful = sum(_doubtful(cells[:: max(1, len(cells) // SAMPLED)], decimal) for cells in numbers)
     matching = [place for place, cells in same if _fits(cells, kinds, decimal)]
     if not matching or not {"number", "date"} & set(kinds):
         return None
@@ -130,6 +125,14 @@ def _sparse_kind(same: list[tuple[int, list[str]]], first: int, column: int, dec
     """Return the kind of a column that is mostly empty, as of a signal that is written when it changes."""
     kinds = {kind_of(cells[column], decimal) for place, cells in same if place >= first} - {""}
     return "number" if kinds == {"number"} else ""
+
+
+def kind_of_column(cells: Sequence[str], decimal: str) -> str:
+    """Return the kind of most cells: number, date or text; "" for a column with next to nothing in it."""
+    seen = Counter(kind_of(cell, decimal) for cell in cells[:: max(1, len(cells) // SAMPLED)])
+    empty = seen.pop("", 0)
+    common = max(seen, key=lambda kind: (seen[kind], kind != "text"), default="")
+    return common if seen[common] * 10 > empty else ""
 
 
 def _fits(cells: list[str], kinds: list[str], decimal: str) -> bool:

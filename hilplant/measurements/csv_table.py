@@ -74,7 +74,7 @@ def read_csv(path: Path) -> Table:
     for name, kind in kinds.items():
         cells = table.column(name)
         if name in as_text:
-            columns[name] = _converted(path, cells.to_pylist(), kind, layout)
+            columns[name] = converted(path, cells.to_pylist(), kind, layout.decimal, layout.first_row + 1)
         else:
             columns[name] = np.asarray(cells.to_numpy(), np.float64)
     units = dict(zip(layout.names, layout.units, strict=True))
@@ -123,26 +123,38 @@ def _parsed(content: bytes, layout: Layout, as_text: set[str]) -> pa.Table:
     )  # fmt: skip
 
 
-def _converted(path: Path, cells: list[str | None], kind: str, layout: Layout) -> Floats:
-    """Read the cells of a column one by one; dates in seconds from the first."""
+def converted(path: Path, cells: list[str | None], kind: str, decimal: str, first_line: int) -> Floats:
+    """Read the cells of a column one by one, shape (rows,); dates in seconds from the first, NaN for an empty cell.
+
+    Raises
+    ------
+    Failure
+        Naming the line of a cell that is not of this kind: number or date.
+
+    """
     values = np.full((len(cells), 2), np.nan)  # days, and seconds or the number itself
     for index, cell in enumerate(cells):
-        number = number_of(cell or "", layout.decimal)
+        number = number_of(cell or "", decimal)
         plain = (0, number) if number is not None and (kind == "number" or np.isnan(number)) else None
         value = plain or (moment_of(cell or "") if kind == "date" else None)
         if value is None:
             what = "a number" if kind == "number" else "a time"
-            raise Failure(f"{path}:{layout.first_row + 1 + index}: '{_shown(cell or '')}' is not {what}")
+            raise Failure(f"{path}:{first_line + index}: '{_shown(cell or '')}' is not {what}")
         values[index] = value
     days, seconds = values.T
-    return seconds if kind == "number" else _since_first(days, seconds)
+    return seconds if kind == "number" else since_first(days, seconds)
 
 
-def _since_first(days: Floats, seconds: Floats) -> Floats:
-    """Return seconds from the first moment; a time of the day alone goes on behind midnight."""
+def since_first(days: Floats, seconds: Floats) -> Floats:
+    """Return seconds from the first moment that is there; a time of the day alone goes on behind midnight."""
+    there = np.isfinite(seconds)
+    if not there.any():
+        return seconds
     if not np.any(days):
-        days = np.concatenate([[0.0], np.cumsum(np.diff(seconds) < -43200.0)])
-    return np.asarray((days - days[0]) * 86400.0 + seconds - seconds[0], np.float64)
+        days = np.zeros(len(seconds))
+        days[there] = np.concatenate([[0.0], np.cumsum(np.diff(seconds[there]) < -43200.0)])
+    first = int(np.argmax(there))
+    return np.asarray((days - days[first]) * 86400.0 + seconds - seconds[first], np.float64)
 
 
 def _shown(text: str) -> str:

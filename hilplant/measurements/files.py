@@ -4,7 +4,7 @@ import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from hilplant.measurements.channels import Channels
 from hilplant.measurements.columns import KNOWN_NAMES, Column, clock_of, has_unit, text_columns, unit_scale
 from hilplant.measurements.frames import FrameSource
 from hilplant.measurements.measurement import Channel
+
+if TYPE_CHECKING:
+    from hilplant.measurements.csv_table import Table
 
 LOGS = (".blf", ".asc", ".log", ".trc")
 ENDINGS = (".hilrec", ".csv", ".txt", ".parquet", ".mf4", ".mdf", *LOGS)
@@ -114,54 +117,32 @@ def _csv(origin: Origin) -> Channels:
     clock = clock_of(origin.time) or (None if origin.time or _time_of(columns, units) else table.clock)
     if clock is not None:
         count = len(next(iter(columns.values())))
-        return Channels(_on_one_clock(clock[0] + clock[1] * np.arange(count), columns, units), (), table.texts)
-    return Channels(_table(origin, columns, units, table.first_line, table.texts), (), table.texts)
+        return _on_one_clock(clock[0] + clock[1] * np.arange(count), columns, units, table.texts)
+    return _table(origin, table._replace(columns=columns))
 
 
 def _parquet(origin: Origin) -> Channels:
-    import pyarrow as pa
-    from pyarrow import parquet
+    from hilplant.measurements.parquet_table import read_parquet
 
-    try:
-        table = parquet.read_table(origin.path)
-    except (pa.ArrowException, OSError, MemoryError) as error:
-        raise Failure(f"{origin.path}: not a Parquet file: {str(error).splitlines()[0]}") from error
-    columns, units = {}, {}
-    for field in table.schema:
-        try:
-            columns[field.name], date = _numbers(table.column(field.name).to_numpy())
-        except (ValueError, TypeError):
-            continue  # a column of text or dates is no channel
-        units[field.name] = "s" if date else (field.metadata or {}).get(b"unit", b"").decode("utf-8", "replace")
-    return _table(origin, columns, units, 1)
+    return _table(origin, read_parquet(origin.path))
 
 
-def _numbers(values: Any) -> tuple[Any, bool]:
-    """Return a column as floats; dates and durations in seconds from the first, and whether it is one of these."""
-    if values.dtype.kind not in "mM" or not len(values):
-        return np.asarray(values, np.float64), False
-    since = (values - values[0] if values.dtype.kind == "M" else values).astype("timedelta64[ns]")
-    return np.where(np.isnat(since), np.nan, since.astype(np.int64) * 1e-9), True
-
-
-def _table(
-    origin: Origin, columns: Mapping[str, Any], units: Mapping[str, str], first_line: int, texts: Mapping[str, str] = {}
-) -> Channels:
+def _table(origin: Origin, table: "Table") -> Channels:
     """Take the time out of a table, in seconds; rows without a time are an error."""
+    columns, units = table.columns, table.units
     column = origin.time or _time_of(columns, units)
     if column is None or column.name not in columns:
         wanted = f"'{column.name}'" if column else "for the time"
-        text = (
-            f"no column {wanted}; say --columns time=NAME[unit] with one of {', '.join(columns)}{text_columns(texts)}"
-        )
-        raise Failure(f"{origin.path}: {text}")
+        text = f"no column {wanted}; say --columns time=NAME[unit] with one of {', '.join(columns)}"
+        raise Failure(f"{origin.path}: {text}{text_columns(table.texts)}")
     unit = column.unit if column.unit is not None else units.get(column.name, "")
     place = f"{origin.path}, column '{column.name}'"
     time_s = np.asarray(columns[column.name]) * unit_scale(place, "time", unit) * column.factor
     if (bad := np.flatnonzero(~np.isfinite(time_s))).size:
-        raise Failure(f"{origin.path}:{first_line + bad[0]}: the row has no time")
+        row, others = table.first_line + bad[0], f", nor have {len(bad) - 1} others" if len(bad) > 1 else ""
+        raise Failure(f"{origin.path}:{row}: the row has no time{others}; leave out rows without one")
     rest = {name: values for name, values in columns.items() if name != column.name}
-    return _on_one_clock(time_s, rest, units)
+    return _on_one_clock(time_s, rest, units, table.texts)
 
 
 def _time_of(columns: Mapping[str, Any], units: Mapping[str, str]) -> Column | None:
@@ -171,8 +152,11 @@ def _time_of(columns: Mapping[str, Any], units: Mapping[str, str]) -> Column | N
     return next(words, timed[0] if len(timed) == 1 else None)
 
 
-def _on_one_clock(time_s: Any, columns: Mapping[str, Any], units: Mapping[str, str]) -> Channels:
-    return Channels({name: _whole(Channel(time_s, each, units.get(name, ""))) for name, each in columns.items()})
+def _on_one_clock(
+    time_s: Any, columns: Mapping[str, Any], units: Mapping[str, str], texts: Mapping[str, str] | None = None
+) -> Channels:
+    found = {name: _whole(Channel(time_s, each, units.get(name, ""))) for name, each in columns.items()}
+    return Channels(found, texts=texts)
 
 
 def _whole(channel: Channel) -> Channel:

@@ -17,6 +17,7 @@ from hilplant.failure import Failure
 from hilplant.measurements.channels import Channels
 from hilplant.measurements.frames import LoggedFrame, LoggedFrames
 from hilplant.measurements.measurement import Channel
+from hilplant.measurements.mf4_blocks import missing_bytes
 
 #: A file that takes longer is not read [s].
 LONGEST_S = 600.0
@@ -46,11 +47,13 @@ def read_mf4_frames(path: Path) -> LoggedFrames:
 def _frames(arrays: dict[str, np.ndarray]) -> Iterator[LoggedFrame]:
     columns = (arrays[name].tolist() for name in ("time", "identifier", "extended", "length", "channel"))
     for index, (time_s, identifier, extended, length, channel) in enumerate(zip(*columns, strict=True)):
-        yield LoggedFrame(time_s, identifier, bool(extended), arrays["data"][index, :length].tobytes(), str(channel))
+        yield LoggedFrame(time_s, identifier, bool(extended), arrays["data"][index, :length].tobytes(), channel)
 
 
 def _arrays(path: Path, what: str) -> dict[str, np.ndarray]:
     need("mdf")
+    if missing := missing_bytes(path):
+        raise Failure(f"{path}: is cut off or damaged: at least {missing} bytes are missing behind its end")
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "arrays.npz"
         command = [sys.executable, "-m", "hilplant.measurements.mf4_process", str(path), what, str(out)]

@@ -119,3 +119,12 @@ def test_changed_bytes_end_in_channels_or_one_line(exported: Path, database: Pat
     except Failure as error:
         assert "\n" not in str(error)
         assert str(error).startswith(str(exported))
+
+
+def test_what_is_wrong_with_a_file_is_told(exported: Path) -> None:
+    """Not what goes wrong once more as half-made objects are deleted."""
+    content = bytearray(exported.read_bytes())
+    content[64:68] = b"##XX"
+    exported.write_bytes(content)
+    with pytest.raises(Failure, match=r"it may be damaged: .*is not a valid MDF file$"):
+        read_channels(Origin(exported))

@@ -175,6 +175,68 @@ def test_dates_in_parquet(tmp_path: Path, unit: str) -> None:
     same(path)
 
 
+def table_of(path: Path, time: pa.Array, park: pa.Array | np.ndarray = PARK) -> Path:
+    parquet.write_table(pa.table({"time": time, "voltage": VOLTS, "current": AMPERES, "park": park}), path)
+    return path
+
+
+@pytest.mark.parametrize(("yes", "no"), [("on", "off"), ("True", "False"), ("ja", "nein"), ("1", "0"), ("0x1", "0x0")])
+@pytest.mark.parametrize("kind", [
+    pa.string(), pa.large_string(), pa.dictionary(pa.int8(), pa.string()), pa.dictionary(pa.int32(), pa.large_string()),
+], ids=str)  # fmt: skip
+def test_words_in_parquet_are_those_of_a_csv_file(tmp_path: Path, yes: str, no: str, kind: pa.DataType) -> None:
+    words = [None if k == 400 else yes if each else no for k, each in enumerate(PARK)]
+    park = pa.array(words, pa.string()).cast(kind)
+    found = read_channels(Origin(table_of(tmp_path / "a.parquet", pa.array(TIME_S), park)))["park"].values
+    assert np.allclose(found, np.where(np.arange(COUNT) == 400, np.nan, PARK), equal_nan=True)
+
+
+def test_other_text_in_parquet(tmp_path: Path) -> None:
+    """A column of text is left out; a text among numbers is named by its row."""
+    path = tmp_path / "a.parquet"
+    assert "park" not in read_channels(Origin(table_of(path, pa.array(TIME_S), pa.array(["x y"] * COUNT))))
+    words = ["perhaps" if k == 399 else "on" for k in range(COUNT)]
+    with pytest.raises(Failure, match=r"a\.parquet:400: 'perhaps' is not a number"):
+        read_channels(Origin(table_of(path, pa.array(TIME_S), pa.array(words).dictionary_encode())))
+
+
+@pytest.mark.parametrize(("kind", "per_s"), [
+    (pa.time32("ms"), 1e3), (pa.time64("us"), 1e6), (pa.time64("ns"), 1e9),
+])  # fmt: skip
+@pytest.mark.parametrize("start_s", [0, 86399.6])
+def test_times_of_the_day_in_parquet_go_on_over_midnight(
+    tmp_path: Path, kind: pa.DataType, per_s: float, start_s: float
+) -> None:
+    ticks = np.round((start_s + TIME_S) % 86400.0 * per_s).astype("i4" if kind == pa.time32("ms") else "i8")
+    same(table_of(tmp_path / "a.parquet", pa.array(ticks).cast(kind)))
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+@pytest.mark.parametrize("form", ["%Y-%m-%d %H:%M:%S.%f", "%H:%M:%S.%f"])
+@pytest.mark.parametrize("empty", [0, 2, 699])
+def test_a_date_that_is_not_there_takes_no_other_with_it(tmp_path: Path, ending: str, form: str, empty: int) -> None:
+    """Beside the time it is a missing number; as the time, its row alone is complained of."""
+    stamps = [START + datetime.timedelta(seconds=time_s) for time_s in TIME_S.tolist()]
+    path = tmp_path / f"a.{ending}"
+    for second in ("clock", "time"):
+        names = {"clock": ["time", "clock"], "time": ["voltage", "time"]}[second]
+        if ending == "csv":
+            written = ["" if k == empty else stamp.strftime(form) for k, stamp in enumerate(stamps)]
+            rows = [f"{time_s:.3f},{cell}" for time_s, cell in zip(TIME_S, written, strict=True)]
+            path.write_text("\n".join([",".join(names), *rows]))
+        else:
+            cells = [None if k == empty else each if "Y" in form else each.time() for k, each in enumerate(stamps)]
+            parquet.write_table(pa.table(dict(zip(names, (TIME_S, pa.array(cells)), strict=True))), path)
+        if second == "clock":
+            found = read_channels(Origin(path))["clock"].values
+            truth = np.where(np.arange(COUNT) == empty, np.nan, TIME_S - TIME_S[int(empty == 0)])
+            assert np.allclose(found, truth, atol=2e-7, equal_nan=True)
+        else:
+            line = empty + (2 if ending == "csv" else 1)
+            with pytest.raises(Failure, match=rf":{line}: the row has no time; leave out rows without one$"):
+                read_channels(Origin(path))
+
+
 @pytest.mark.parametrize("word", ["OL", "n/a", "#N/A", "NULL", "-", "NaN", "None"])
 def test_words_for_nothing(tmp_path: Path, word: str) -> None:
     lines = text_of().splitlines()
