@@ -21,6 +21,7 @@ MOST_VALUES = 100_000
 #: A whole number of more characters is beyond every float.
 _LONGEST_INTEGER = 250
 
+_MERGE = "merge keys (<<) are not supported; write the keys out here, or take a whole group over: `key: *name`"
 _STANDARD_TAGS = frozenset(f"tag:yaml.org,2002:{kind}" for kind in ("str", "seq", "map"))
 _WORDS = {"": None, "~": None} | {
     spelling: value
@@ -140,12 +141,19 @@ def _value(node: yaml.Node, location: Location, document: Document) -> Any:
 
 def _mapping(node: yaml.MappingNode, location: Location, document: Document) -> dict[str, Any]:
     data: dict[str, Any] = {}
+    merged: dict[str, Any] = {}
     for key_node, value_node in node.value:
         line = key_node.start_mark.line + 1
         if not isinstance(key_node, yaml.ScalarNode):
             document.problems.append(Problem(document.file, line, "a key must be a single word"))
             continue
         key = key_node.value
+        if key == "<<" and key_node.style is None:
+            document.problems.append(Problem(document.file, line, _MERGE))
+            parts = _value(value_node, (*location, key), document)  # taken over, or its keys would be told as missing
+            for part in parts if isinstance(parts, list) else [parts]:
+                merged = (part if isinstance(part, dict) else {}) | merged
+            continue
         if key in data:
             first = document.place((*location, key))[1]
             text = f"key '{key}' comes twice, first in line {first}"
@@ -153,7 +161,7 @@ def _mapping(node: yaml.MappingNode, location: Location, document: Document) -> 
             continue
         document.places[(*location, key)] = (document.file, line)
         data[key] = _value(value_node, (*location, key), document)
-    return data
+    return merged | data
 
 
 def _line_of(error: yaml.YAMLError) -> int:

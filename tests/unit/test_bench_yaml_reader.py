@@ -81,6 +81,27 @@ def test_broken_syntax_is_one_problem_with_its_line(text: str, line: int) -> Non
     assert document.data is None
 
 
+@pytest.mark.parametrize(
+    ("text", "line", "data"),
+    [
+        ("b: &b {c: 1}\nd: {<<: *b, e: 2}\n", 2, {"c": 1, "e": 2}),
+        ("b: &b {c: 1}\nd:\n  c: 3\n  <<: *b\n", 4, {"c": 3}),
+        ("b: [&b {c: 1}, &e {c: 2, f: 2}]\nd: {<<: [*b, *e]}\n", 2, {"c": 1, "f": 2}),
+        ("d: {<<: 3, c: 1}\n", 1, {"c": 1}),
+    ],
+)
+def test_a_merge_key_is_one_problem_that_says_what_to_write(text: str, line: int, data: dict[str, int]) -> None:
+    document = read_text(text, "f.yaml")
+    (problem,) = document.problems
+    assert str(problem).startswith(f"f.yaml:{line}: merge keys (<<) are not supported; write the keys out here")
+    assert document.data["d"] == data
+
+
+def test_a_key_in_quotes_is_no_merge_key() -> None:
+    document = read_text("d: {'<<': 3}\n", "f.yaml")
+    assert (document.data, document.problems) == ({"d": {"<<": 3}}, [])
+
+
 @pytest.mark.parametrize("text", ["a: !!python/object:os.system {}\n", "a: !mine 3\n", "? [a, b]\n: 3\n"])
 def test_tags_and_composite_keys_are_refused(text: str) -> None:
     assert len(read_text(text, "f.yaml").problems) == 1
