@@ -11,6 +11,7 @@ from typing import Any
 
 from hilplant.bench.bus_description import FrameEntry, ReceivedEntry, SentEntry
 from hilplant.bench.mapping_description import ConditionEntry, SignalEntry
+from hilplant.bench.unit_doubts import unit_doubt
 from hilplant.bus.codec import Mapped
 from hilplant.bus.flag_conditions import ConditionTerm, FlagCondition, link_condition
 from hilplant.bus.frame_layout import FD_LENGTHS
@@ -45,7 +46,7 @@ def framed(spot: Spot, message: Any, entry: FrameEntry) -> Any:
 def map_message(
     spot: Spot, message: Any, entry: ReceivedEntry | SentEntry, signals: Sequence[Signal]
 ) -> MappedMessage | None:
-    """Look up and check every mapped signal; None when any of them cannot work."""
+    """Look up and check every mapped signal; None when any cannot work. Units that contradict are a warning."""
     mappings: list[Mapped | None] = [
         _mapping(spot, message, (name, written), signals) for name, each in entry.signals.items() for written in each
     ]
@@ -69,10 +70,12 @@ def _mapping(
         return None
     mapping = SignalMapping(name, entry.signal, entry.scale, entry.offset, entry.choices, entry.invert)
     try:
-        link(message, mapping, signals)
+        made = link(message, mapping, signals)
     except MappingError as error:
         spot.note("signals", name, text=f"{message.name}.{name}: {error.text}")
         return None
+    if doubt := unit_doubt(made, mapping):
+        spot.warn("signals", name, text=f"{message.name}.{name}: {doubt}")
     return mapping
 
 

@@ -1,9 +1,10 @@
-"""What a cell of a table may hold: a number in several writings, a date, yes and no, a word for nothing; and units."""
+"""What a cell of a table may hold: a number in several writings, a date, yes and no, a word for nothing, a unit."""
 
 import math
 import re
-import unicodedata
 from datetime import date
+
+from hilplant.units import quantity_of, unit_of
 
 #: Words for a value that is not there.
 NOTHING = frozenset(("", "-", "--", "nan", "na", "n/a", "#n/a", "#nv", "null", "none", "ol", "overflow", "over", "---"))
@@ -24,27 +25,14 @@ _DATE = re.compile(
 )
 #: Minutes and seconds, as a spreadsheet shows the time of a measurement.
 _MINUTES = re.compile(r"(?P<minute>\d{1,3}):(?P<second>[0-5]\d[.,]\d+)")
-_UNITS = {
-    "second": "s", "seconds": "s", "sec": "s", "secs": "s", "sekunde": "s", "sekunden": "s",
-    "millisecond": "ms", "milliseconds": "ms", "msec": "ms", "microsecond": "us", "microseconds": "us",
-    "volt": "V", "volts": "V", "v": "V", "millivolt": "mV", "millivolts": "mV",
-    "ampere": "A", "amperes": "A", "amp": "A", "amps": "A", "a": "A", "milliampere": "mA", "milliamps": "mA",
-}  # fmt: skip
-_KNOWN = frozenset(
-    ("s", "ms", "us", "ns", "min", "h", "d", "V", "mV", "uV", "kV", "A", "mA", "uA", "kA", "W", "ohm", "rpm", "1/min",
-     "Hz", "kHz", "rad/s", "rad", "deg", "°", "°C", "degC", "K", "%", "N", "Nm", "Ncm", "sequence", "bit", "bool")
-)  # fmt: skip
-
-
-def unit_of(written: str) -> str:
-    """Return a unit in its short form: "Volt" is V, either letter mu is u, brackets go."""
-    plain = unicodedata.normalize("NFKC", written).strip().strip("[]()").strip().replace("\u03bc", "u")
-    return _UNITS.get(plain.lower(), plain)
+#: Stand where units stand, and are none.
+_NO_UNITS = frozenset(("sequence", "bit", "bool"))
 
 
 def is_unit(written: str) -> bool:
     """Say whether a cell can be nothing but a unit."""
-    return unit_of(written) in _KNOWN or unit_of(written).lower() == "sequence"
+    unit = unit_of(written)
+    return unit.lower() in _NO_UNITS or (unit != "" and quantity_of(unit) is not None)
 
 
 def moment_of(cell: str) -> tuple[int, float] | None:

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from hilplant.checked_yaml.problems import suggestion
 from hilplant.failure import Failure
-from hilplant.measurements.cells import unit_of
 from hilplant.measurements.measurement import Channel
+from hilplant.units import FACTORS, unit_of
 
 #: What a column may be, with the unit it is brought to.
 ROLES = {"time": "s", "voltage": "V", "current": "A", "park": "", "fast": "", "on": ""}
@@ -25,11 +25,6 @@ KNOWN_NAMES = {
     "fast": ("relay_fast", "fast", "relayfast"),
 }
 
-_SCALES = {
-    "s": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0, "d": 86400.0},
-    "V": {"V": 1.0, "mV": 1e-3, "kV": 1e3, "uV": 1e-6, "µV": 1e-6},
-    "A": {"A": 1.0, "mA": 1e-3, "kA": 1e3, "uA": 1e-6, "µA": 1e-6},
-}
 _ENTRY = re.compile(r"(?P<name>[^\[\]*]+?)\s*(\[(?P<unit>[^\]]*)\])?\s*(\*\s*(?P<factor>\S+))?")
 _CLOCK = re.compile(r"(?P<start>[-+]?\d*\.?\d*(?:[eE][-+]?\d+)?):(?P<step>\d*\.?\d+(?:[eE][-+]?\d+)?)")
 
@@ -95,15 +90,16 @@ def unit_scale(place: str, role: str, unit: str) -> float:
     if not own or not unit:
         return 1.0
     unit = unit_of(unit)
-    if unit not in _SCALES[own]:
-        known = ", ".join(_SCALES[own])
+    if unit not in FACTORS[own]:
+        known = ", ".join(FACTORS[own])
         raise Failure(f"{place}: {role} comes in one of {known}, not in '{unit}'; say it as {role}=NAME[{own}]")
-    return _SCALES[own][unit]
+    return FACTORS[own][unit]
 
 
 def has_unit(role: str, unit: str) -> bool:
     """Say whether a unit is one of those that the role comes in."""
-    return unit_of(unit) in _SCALES.get(ROLES[role], {})
+    own = ROLES[role]
+    return own != "" and unit_of(unit) in FACTORS[own]
 
 
 def text_columns(texts: Mapping[str, str]) -> str:

@@ -9,7 +9,8 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from hilplant.measurements.cells import in_thousands, is_unit, kind_of, unit_of
+from hilplant.measurements.cells import in_thousands, is_unit, kind_of
+from hilplant.units import unit_of
 
 #: Separator and decimal sign, in the order in which they are tried; the first of equals is taken.
 WRITINGS = ((",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", ","), ("|", "."), (" ", "."))

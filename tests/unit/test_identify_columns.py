@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hilplant.failure import Failure
-from hilplant.measurements.columns import parse_columns
+from hilplant.measurements.columns import ROLES, has_unit, parse_columns, unit_scale
 from hilplant.measurements.measurement import Channel
 from hilplant.measurements.preparation import Preparation, prepare
 
@@ -44,3 +44,22 @@ def test_a_factor_keeps_the_unit_of_the_file_where_that_is_one_of_the_role(
 def test_wrong_columns_are_told(text: str, message: str) -> None:
     with pytest.raises(Failure, match=message.replace("(", r"\(")):
         parse_columns(text)
+
+
+@pytest.mark.parametrize("unit", ["%", "", "V", "m/s"])
+def test_a_role_without_a_unit_comes_in_none(unit: str) -> None:
+    assert not any(has_unit(role, unit) for role, own in ROLES.items() if own == "")
+
+
+@pytest.mark.parametrize(
+    ("role", "unit", "scale"),
+    [
+        ("time", "sec", 1.0),
+        ("time", "Minuten", 60.0),
+        ("time", "µs", 1e-6),
+        ("voltage", "\u03bcV", 1e-6),
+        ("current", "kA", 1e3),
+    ],
+)
+def test_a_column_comes_in_the_units_that_a_database_may_have(role: str, unit: str, scale: float) -> None:
+    assert unit_scale("", role, unit) == scale
