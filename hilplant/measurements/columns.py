@@ -25,6 +25,8 @@ KNOWN_NAMES = {
     "fast": ("relay_fast", "fast", "relayfast"),
 }
 
+#: Quantities beside the roles of a measurement, that other files hold.
+_OWN_UNITS = ROLES | {"speed": "rad/s"}
 _ENTRY = re.compile(r"(?P<name>[^\[\]*]+?)\s*(\[(?P<unit>[^\]]*)\])?\s*(\*\s*(?P<factor>\S+))?")
 _CLOCK = re.compile(r"(?P<start>[-+]?\d*\.?\d*(?:[eE][-+]?\d+)?):(?P<step>\d*\.?\d+(?:[eE][-+]?\d+)?)")
 
@@ -86,7 +88,7 @@ def clock_of(column: Column | None) -> tuple[float, float] | None:
 
 def unit_scale(place: str, role: str, unit: str) -> float:
     """Return what a value in `unit` is multiplied with to be in the role's own unit; no unit is that one."""
-    own = ROLES[role]
+    own = _OWN_UNITS[role]
     if not own or not unit:
         return 1.0
     unit = unit_of(unit)
@@ -98,7 +100,7 @@ def unit_scale(place: str, role: str, unit: str) -> float:
 
 def has_unit(role: str, unit: str) -> bool:
     """Say whether a unit is one of those that the role comes in."""
-    own = ROLES[role]
+    own = _OWN_UNITS[role]
     return own != "" and unit_of(unit) in FACTORS[own]
 
 

@@ -33,6 +33,16 @@ class Origin(NamedTuple):
     frames: FrameSource = FrameSource()
 
 
+class NoTime(Failure):
+    """Nothing says which of the `columns` of a table is the time."""
+
+    def __init__(self, path: Path, table: "Table") -> None:
+        """Keep the columns, and say how a command line names one of them."""
+        self.columns, self.texts = tuple(table.columns), table.texts
+        told = f"{', '.join(self.columns)}{text_columns(self.texts)}"
+        super().__init__(f"{path}: no column for the time; say --columns time=NAME[unit] with one of {told}")
+
+
 def read_channels(origin: Origin) -> Channels:
     """Read every channel of a file, by its ending.
 
@@ -131,9 +141,10 @@ def _table(origin: Origin, table: "Table") -> Channels:
     """Take the time out of a table, in seconds; rows without a time are an error."""
     columns, units = table.columns, table.units
     column = origin.time or _time_of(columns, units)
-    if column is None or column.name not in columns:
-        wanted = f"'{column.name}'" if column else "for the time"
-        text = f"no column {wanted}; say --columns time=NAME[unit] with one of {', '.join(columns)}"
+    if column is None:
+        raise NoTime(origin.path, table)
+    if column.name not in columns:
+        text = f"no column '{column.name}'; say --columns time=NAME[unit] with one of {', '.join(columns)}"
         raise Failure(f"{origin.path}: {text}{text_columns(table.texts)}")
     unit = column.unit if column.unit is not None else units.get(column.name, "")
     place = f"{origin.path}, column '{column.name}'"
@@ -146,9 +157,10 @@ def _table(origin: Origin, table: "Table") -> Channels:
 
 
 def _time_of(columns: Mapping[str, Any], units: Mapping[str, str]) -> Column | None:
-    """Return the column that is called time, else the only one in a unit of time."""
-    words = (Column(name) for word in KNOWN_NAMES["time"] for name in columns if name.lower() == word)
+    """Return the column that is called time and in no other unit, else the only one in a unit of time."""
     timed = [Column(name) for name in columns if units.get(name) and has_unit("time", units[name])]
+    fit = [name for name in columns if not units.get(name) or Column(name) in timed]
+    words = (Column(name) for word in KNOWN_NAMES["time"] for name in fit if name.lower() == word)
     return next(words, timed[0] if len(timed) == 1 else None)
 
 

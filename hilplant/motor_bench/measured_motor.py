@@ -1,15 +1,14 @@
 """From readings to the parameters of a motor, each with its standard error, section 5.4."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from uncertainties import UFloat
 
-from hilplant.arrays import Floats
 from hilplant.failure import Failure
-from hilplant.measurements.csv_table import read_csv
 from hilplant.motor_bench.bench_measurements import (
     MotorFriction,
     SteadyRun,
@@ -25,6 +24,7 @@ from hilplant.motor_bench.bench_measurements import (
 )
 from hilplant.motor_bench.data_sheet import SpeedSheet, from_sheet, with_error
 from hilplant.motor_bench.readings import BenchMode, BenchReadings, DataSheet, Given, Readings, SheetMode, Windings
+from hilplant.motor_bench.sampled_quantity import fitted
 from hilplant.motor_bench.typical import LEADS_TO, typical_motor
 from hilplant.motor_bench.windings import brush_constants_v_s
 from hilplant.units import RAD_PER_S_PER_RPM
@@ -143,7 +143,8 @@ def _of_bench(readings: BenchReadings, beside: Path, typical: Values) -> Values:
     if readings.armature is not None:
         values["inertia_kg_m2"] = cylinder_inertia(readings.armature.mass_kg, readings.armature.radius_m)
     if readings.run_down is not None:
-        values["inertia_kg_m2"] = run_down(*_samples(readings.run_down, beside), friction)
+        law = partial(run_down, friction=friction)
+        values["inertia_kg_m2"] = fitted(beside / readings.run_down, "speed", law)
     return values
 
 
@@ -157,7 +158,8 @@ def _resistance(mode: BenchMode, error: float, typical: UFloat | None) -> UFloat
 
 def _inductance(name: str, mode: BenchMode, ohm: UFloat, beside: Path) -> Values:
     if mode.decay is not None:
-        return {f"{name}_inductance_henry": inductance(decay(*_samples(mode.decay, beside))[0], ohm)}
+        time_constant_s = fitted(beside / mode.decay, "current", lambda time_s, values: decay(time_s, values)[0])
+        return {f"{name}_inductance_henry": inductance(time_constant_s, ohm)}
     if mode.time_constant_s is not None:
         return {f"{name}_inductance_henry": inductance(mode.time_constant_s, ohm)}
     return {}
@@ -168,18 +170,6 @@ def _friction(runs: Sequence[SteadyRun], constants: Sequence[UFloat], given: Giv
         return bounded_friction(runs, constants)
     dry = [k * run.current_a - given.damping_n_m_s * run.speed_rad_s for run, k in zip(runs, constants, strict=True)]
     return MotorFriction(quantity(given.damping_n_m_s), mean_of(dry))
-
-
-def _samples(name: str, beside: Path) -> tuple[Floats, Floats]:
-    """Return the first two columns of a file, rows with a gap left out."""
-    path = beside / name
-    if not path.is_file():
-        raise Failure(f"{path}: cannot be read: there is no such file")
-    first, second = list(read_csv(path).columns.values())[:2]
-    known = np.isfinite(first) & np.isfinite(second)
-    if np.count_nonzero(known) < 10:
-        raise Failure(f"{path}: has fewer than ten rows with two numbers, a time [s] and a value")
-    return first[known], second[known]
 
 
 def _of_sheet(sheet: DataSheet, typical: Values) -> Values:

@@ -40,7 +40,7 @@ class BenchMode(Checked):
     """Readings of one brush.
 
     The resistance comes from a meter or from blocked points, (5.16); the inductance from the time to 36.8 % of a
-    blocked motor's current, (5.19), or from its whole decay: a table of time [s] and current [A] from the step on.
+    blocked motor's current, (5.19), or from its whole decay: a table of time and current from the step on.
     """
 
     resistance_ohm: Positive | None = None
@@ -63,7 +63,7 @@ class MayLack(Sourced):
 
 
 class BenchReadings(MayLack):
-    """A motor on a bench. `run_down` is a table of time [s] and shaft speed [rad/s] with open terminals."""
+    """A motor on a bench. `run_down` is a table of time and shaft speed with open terminals."""
 
     kind: Literal["bench"]
     gear_ratio: Positive
