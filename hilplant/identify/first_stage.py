@@ -9,6 +9,7 @@ hang on that. `by_park` needs no assumption: the park switch gives the mean spee
 turns, then J from the coefficients. Standard errors stand for the noise, not for what is left of the load.
 """
 
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -43,6 +44,7 @@ from hilplant.motor_bench.bench_measurements import SteadyRun as _Turn
 BEFORE_S, WINDOW_S = 0.01, 0.04
 #: Standard error of a turn's time in samples: each of its two park edges lies anywhere between two of them.
 EDGES_SAMPLES = (2.0 / 12.0) ** 0.5
+_NO_STEP = "no step of the voltage with the motor on; record switching on at several voltages"
 
 
 class ModeResult(NamedTuple):
@@ -62,7 +64,15 @@ class ModeResult(NamedTuple):
     turns: int
 
 
-def first_stage(data: Measurement, gear_ratio: float, drag_n_m_s: float | None = None) -> dict[str, ModeResult]:
+class FirstStage(dict[str, ModeResult]):
+    """Results by mode; `failures` says of each other mode that the data contain why nothing settles for it."""
+
+    def __init__(self, results: Mapping[str, ModeResult], failures: Mapping[str, str]) -> None:
+        super().__init__(results)
+        self.failures = dict(failures)
+
+
+def first_stage(data: Measurement, gear_ratio: float, drag_n_m_s: float | None = None) -> FirstStage:
     """Return what the data say of each mode that they contain.
 
     `drag_n_m_s` is the assumed b + gamma; left out, it is that of (5.15).
@@ -70,7 +80,7 @@ def first_stage(data: Measurement, gear_ratio: float, drag_n_m_s: float | None =
     Raises
     ------
     Failure
-        When the mode is not known, or nothing settles for a mode that the data contain.
+        When the mode is not known, or nothing settles for any mode that the data contain.
 
     """
     if np.all(np.isnan(data.fast)):
@@ -79,22 +89,24 @@ def first_stage(data: Measurement, gear_ratio: float, drag_n_m_s: float | None =
             "say --mode slow"
         )
     results: dict[str, ModeResult] = {}
-    failures: list[str] = []
+    failures: dict[str, str] = {}
     drag = drag_n_m_s or load_constant(gear_ratio=gear_ratio)
     steps = voltage_steps(data.voltage_v, data.period_s)
     for mode, value in (("slow", 0.0), ("fast", 1.0)):
         mask = running(data) & (data.fast == value)
-        if windows := _windows(data, mask, steps):
-            try:
-                results[mode] = _mode(data, mode, windows, _turns(data, mask, gear_ratio), drag)
-            except Failure as error:
-                failures.append(str(error))
-    if failures and not results:
-        raise Failure("; ".join(failures))
+        windows = _windows(data, mask, steps)
+        if not windows:
+            if np.count_nonzero(mask) * data.period_s > WINDOW_S:
+                failures[mode] = _NO_STEP
+            continue
+        try:
+            results[mode] = _mode(data, mode, windows, _turns(data, mask, gear_ratio), drag)
+        except Failure as error:
+            failures[mode] = str(error)
     if not results:
-        text = "no step of the voltage with the motor on; record switching on at several voltages"
-        raise Failure(f"{data.source}: {text}")
-    return results
+        told = "; ".join(f"{data.source}, {mode} mode: {text}" for mode, text in failures.items())
+        raise Failure(told or f"{data.source}: {_NO_STEP}")
+    return FirstStage(results, failures)
 
 
 def _windows(data: Measurement, mask: Flags, steps: list[int]) -> list[slice]:
@@ -116,17 +128,14 @@ def _mode(data: Measurement, mode: str, windows: list[slice], turns: list[_Turn]
         Stretch(data.voltage_v[part], current[part], data.valid[part], int(np.count_nonzero(rest[part])))
         for part in windows
     ]
-    try:
-        found = fit(stretches, data.period_s, friction=True)
-    except Failure as error:
-        raise Failure(f"{data.source}, {mode} mode: {error}") from error
+    found = fit(stretches, data.period_s, friction=True)
     if not _sound(found):
         raise Failure(
-            f"{data.source}, {mode} mode: the coefficients have no standard errors: the {len(windows)} steps of the "
+            f"the coefficients have no standard errors: the {len(windows)} steps of the "
             "voltage say too little beside noise and load; record more switching on, at several voltages"
         )
     named = coefficients(TransferFunction(*correlated_values([*found.function, found.friction], found.covariance)[:4]))
-    _refuse_impossible(data, mode, named)
+    _refuse_impossible(named)
     assumed = by_load(named, drag_n_m_s)
     if not turns:
         return ModeResult(mode, found, named, assumed, None, None, len(windows), 0)
@@ -149,12 +158,12 @@ def _load(turns: list[_Turn], motor: Equivalent) -> MotorFriction | None:
     return no_load_friction(turns, [motor.constant_v_s] * len(turns))
 
 
-def _refuse_impossible(data: Measurement, mode: str, named: Coefficients) -> None:
+def _refuse_impossible(named: Coefficients) -> None:
     """Refuse coefficients that no motor has."""
     for name, value in named._asdict().items():
         if not value.n > 0.0:
             raise Failure(
-                f"{data.source}, {mode} mode: the data give {name} = {value.n:.3g}, which no motor has: the load hides "
+                f"the data give {name} = {value.n:.3g}, which no motor has: the load hides "
                 "it; record more switching on and steps of the voltage, or filter less"
             )
 

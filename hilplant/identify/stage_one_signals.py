@@ -7,7 +7,7 @@ import numpy as np
 from hilplant.arrays import Floats
 from hilplant.identify.breakaway import torque_part
 from hilplant.identify.filters import filtered, held_answer
-from hilplant.identify.first_stage import ModeResult, first_stage
+from hilplant.identify.first_stage import FirstStage, ModeResult
 from hilplant.identify.srivc import TransferFit, simulated
 from hilplant.measurements.measurement import Measurement, running
 
@@ -38,12 +38,9 @@ class ModeSignals(NamedTuple):
         return {name: getattr(self, name) for name in names}
 
 
-def stage_one_signals(data: Measurement, gear_ratio: float, judged: Measurement | None = None) -> list[ModeSignals]:
-    """Identify each mode from `data`, and answer the voltage of `judged` (Figures 5-10, 5-11), or of `data` itself."""
-    return [
-        _signals(judged if judged is not None else data, mode, result)
-        for mode, result in first_stage(data, gear_ratio).items()
-    ]
+def stage_one_signals(results: FirstStage, judged: Measurement) -> list[ModeSignals]:
+    """Answer the voltage of `judged` in each mode: of the data that stage 1 saw, or of others (Figures 5-10, 5-11)."""
+    return [_signals(judged, mode, result) for mode, result in results.items()]
 
 
 def _signals(data: Measurement, mode: str, result: ModeResult) -> ModeSignals:

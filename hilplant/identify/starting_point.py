@@ -34,6 +34,7 @@ def starting_point(measurements: Sequence[Measurement], choice: Choice, gear_rat
         except Failure as error:
             notes.append(f"stage 1: {error}")
             continue
+        notes += [f"stage 1: {data.source}, {mode} mode: {text}" for mode, text in results.failures.items()]
         found |= {mode: result for mode, result in results.items() if mode not in found}
     motor = _motor(found)
     notes += [f"stage 1, {mode}: {each.steps} steps of the voltage, {each.turns} turns" for mode, each in found.items()]

@@ -52,8 +52,11 @@ def _motor(data: Measurement, gear_ratio: float) -> dict[str, Any]:
         results = first_stage(data, gear_ratio)
     except Failure as error:
         typer.echo(f"stage 1: {error}")
-        return {}
+        return {"stage_1_failure": str(error)}
     figures: dict[str, Any] = {}
+    for mode, text in results.failures.items():
+        typer.echo(f"stage 1, {mode}: nothing settles: {text}")
+        figures[f"{mode}_failure"] = text
     for mode, found in results.items():
         motor = found.by_park or found.by_load
         how = f"{found.turns} turns at ratio {gear_ratio:g}" if found.by_park else "an assumed load"

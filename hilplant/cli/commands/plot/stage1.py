@@ -27,15 +27,19 @@ def stage1(  # noqa: PLR0913, PLR0917
     For each mode, Figures 5-8 to 5-11.
     """
     need("identify")
+    from hilplant.identify.first_stage import first_stage
     from hilplant.identify.stage_one_signals import stage_one_signals
     from hilplant.measurements.named_data import read_named
     from hilplant.plots.measured import plot_stage_one
 
     named = read_named([data, *([held_out] if held_out else [])], columns, frames)
-    found = stage_one_signals(named[0].data, gear_ratio, named[1].data if held_out else None)
+    results = first_stage(named[0].data, gear_ratio)
+    found = stage_one_signals(results, named[-1].data)
     plot_stage_one(found, out, named[-1].text)
     for each in found:
         typer.echo(f"{each.mode}: the transfer function's answer is {each.rms_a:.4g} A rms from the measured current")
+    for mode, text in results.failures.items():
+        typer.echo(f"{mode}: nothing settles: {text}")
     typer.echo(f"{out} written")
     for each in found if table is not None else ():
         assert table is not None
