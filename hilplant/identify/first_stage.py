@@ -44,6 +44,8 @@ from hilplant.motor_bench.bench_measurements import SteadyRun as _Turn
 BEFORE_S, WINDOW_S = 0.01, 0.04
 #: Standard error of a turn's time in samples: each of its two park edges lies anywhere between two of them.
 EDGES_SAMPLES = (2.0 / 12.0) ** 0.5
+#: A turn counts in which no more of the samples are bridged, and no more than so many in a row.
+BRIDGED_PART, BRIDGED_RUN = 0.05, 5
 _NO_STEP = "no step of the voltage with the motor on; record switching on at several voltages"
 
 
@@ -51,7 +53,8 @@ class ModeResult(NamedTuple):
     """What stage 1 found for one mode; every number carries its standard error.
 
     `by_park` is None where no whole turn lies in this mode. `load` is the mean torque at the shaft over the speed of
-    those turns, motor and wiper together, as damping and dry torque; None without two different speeds.
+    those turns, motor and wiper together, as damping and dry torque; None without two different speeds. `left_out` says
+    why whole turns do not count, or that there is none; "" where all do.
     """
 
     mode: str
@@ -62,6 +65,12 @@ class ModeResult(NamedTuple):
     load: MotorFriction | None
     steps: int
     turns: int
+    left_out: str
+
+
+class _Turns(NamedTuple):
+    counted: list[_Turn]
+    left_out: str
 
 
 class FirstStage(dict[str, ModeResult]):
@@ -121,7 +130,7 @@ def _windows(data: Measurement, mask: Flags, steps: list[int]) -> list[slice]:
     return windows
 
 
-def _mode(data: Measurement, mode: str, windows: list[slice], turns: list[_Turn], drag_n_m_s: float) -> ModeResult:
+def _mode(data: Measurement, mode: str, windows: list[slice], turns: _Turns, drag_n_m_s: float) -> ModeResult:
     current = _bridged(data.current_a, data.valid)
     rest = resting(data.voltage_v, data.period_s)
     stretches = [
@@ -137,11 +146,12 @@ def _mode(data: Measurement, mode: str, windows: list[slice], turns: list[_Turn]
     named = coefficients(TransferFunction(*correlated_values([*found.function, found.friction], found.covariance)[:4]))
     _refuse_impossible(named)
     assumed = by_load(named, drag_n_m_s)
-    if not turns:
-        return ModeResult(mode, found, named, assumed, None, None, len(windows), 0)
-    constants = [back_emf_constant(turn, assumed.resistance_ohm) for turn in turns]
+    told = ModeResult(mode, found, named, assumed, None, None, len(windows), len(turns.counted), turns.left_out)
+    if not turns.counted:
+        return told
+    constants = [back_emf_constant(turn, assumed.resistance_ohm) for turn in turns.counted]
     motor = by_constant(named, mean_of(constants))
-    return ModeResult(mode, found, named, assumed, motor, _load(turns, motor), len(windows), len(turns))
+    return told._replace(by_park=motor, load=_load(turns.counted, motor))
 
 
 def _sound(found: TransferFit) -> bool:
@@ -174,13 +184,29 @@ def _bridged(values: Floats, valid: Flags) -> Floats:
     return np.where(valid, values, np.interp(places, places[valid], values[valid]))
 
 
-def _turns(data: Measurement, mask: Flags, gear_ratio: float) -> list[_Turn]:
+def _turns(data: Measurement, mask: Flags, gear_ratio: float) -> _Turns:
     """Return the means over each whole turn between park edges in this mode; L di/dt is nearly 0 there."""
-    turns = []
-    for begin, end in pairwise(rising_edges(data.park)):
-        if np.all(mask[begin:end]) and np.all(data.valid[begin:end]):
+    whole = [(begin, end) for begin, end in pairwise(rising_edges(data.park).tolist()) if np.all(mask[begin:end])]
+    signals = [_bridged(values, data.valid) for values in (data.voltage_v, data.current_a)]
+    counted = []
+    for begin, end in whole:
+        if _unbroken(data.valid, begin, end):
             seconds = quantity((end - begin) * data.period_s, EDGES_SAMPLES * data.period_s)
-            speed = 2.0 * np.pi * gear_ratio / seconds
-            volts, amperes = (float(np.mean(values[begin:end])) for values in (data.voltage_v, data.current_a))
-            turns.append(_Turn(volts, amperes, speed))
-    return turns
+            volts, amperes = (float(np.mean(values[begin:end])) for values in signals)
+            counted.append(_Turn(volts, amperes, 2.0 * np.pi * gear_ratio / seconds))
+    if not whole:
+        return _Turns([], "no whole turn between two park edges")
+    lost = len(whole) - len(counted)
+    why = (
+        f"{lost} of {len(whole)} whole turns left out: more than {100.0 * BRIDGED_PART:g} % of the samples missing or "
+    )
+    why += f"outliers, more than {BRIDGED_RUN} in a row, or one at a park edge"
+    return _Turns(counted, why if lost else "")
+
+
+def _unbroken(valid: Flags, begin: int, end: int) -> bool:
+    """Say whether few enough samples of a turn are bridged for its means, and none at the edges that give its time."""
+    bad = ~valid[begin:end]
+    runs = np.diff(np.flatnonzero(np.concatenate([[True], ~bad, [True]]))) - 1
+    edges = np.concatenate([valid[begin - 1 : begin + 1], valid[end - 1 : end + 1]])
+    return bool(np.all(edges)) and float(np.mean(bad)) <= BRIDGED_PART and int(np.max(runs)) <= BRIDGED_RUN

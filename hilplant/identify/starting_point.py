@@ -37,7 +37,9 @@ def starting_point(measurements: Sequence[Measurement], choice: Choice, gear_rat
         notes += [f"stage 1: {data.source}, {mode} mode: {text}" for mode, text in results.failures.items()]
         found |= {mode: result for mode, result in results.items() if mode not in found}
     motor = _motor(found)
-    notes += [f"stage 1, {mode}: {each.steps} steps of the voltage, {each.turns} turns" for mode, each in found.items()]
+    for mode, each in found.items():
+        left_out = f" ({each.left_out})" if each.left_out else ""
+        notes.append(f"stage 1, {mode}: {each.steps} steps of the voltage, {each.turns} turns{left_out}")
     values = choice.values
     for index, name in enumerate(choice.names):
         values[index] = motor.get(name, 0.0 if name == "damping_n_m_s" and motor else values[index])

@@ -1,7 +1,8 @@
-"""Stage 1 tells of each mode in the data: its result, or why there is none, wherever the result is told."""
+"""Stage 1 tells of each mode in the data: its result, why there is none, and why turns between gaps do not count."""
 
 import json
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -16,13 +17,14 @@ from hilplant.identify.first_stage import first_stage
 from hilplant.identify.parameters import chosen
 from hilplant.identify.starting_point import starting_point
 from hilplant.measurements.measurement import Measurement
+from hilplant.measurements.park import rising_edges
 
 R, L, K, J, DRAG, PERIOD_S = 1.0, 2.0e-3, 0.04, 2e-5, 1e-4, 1e-3
 
 
-def part(fast: float, volts: list[float], drag: float) -> np.ndarray:
-    """Rows of voltage, current, park contact and mode: the motor's two equations, half a second at each voltage."""
-    voltage = np.repeat(volts, 500)
+def part(fast: float, volts: list[float], drag: float, samples: int = 500) -> np.ndarray:
+    """Rows of voltage, current, park contact and mode: the motor's two equations, so many samples at each voltage."""
+    voltage = np.repeat(volts, samples)
     states = [[-R / L, -K / L, 0.0], [K / J, -drag / J, 0.0], [0.0, 1.0, 0.0]]
     system = (states, [[1.0 / L], [0.0], [0.0]], np.eye(3), np.zeros((3, 1)))
     current, _, angle = lsim(system, voltage, PERIOD_S * np.arange(len(voltage)), interp=False)[1].T
@@ -36,7 +38,10 @@ GOOD = [0.0, 8.0, 12.0, 0.0, 10.0, 14.0]
 
 def data(slow: list[float], drag: float) -> Measurement:
     """A good recording in the fast mode behind one in the slow mode that may tell nothing."""
-    table = np.vstack([part(0.0, slow, drag), part(1.0, GOOD, DRAG)])
+    return as_measured(np.vstack([part(0.0, slow, drag), part(1.0, GOOD, DRAG)]))
+
+
+def as_measured(table: np.ndarray) -> Measurement:
     volts, current, park, fast = table.T
     time_s = PERIOD_S * np.arange(len(table))
     return Measurement(time_s, volts, current, park, fast, np.ones(len(table), bool), PERIOD_S, "rig")
@@ -78,3 +83,52 @@ def test_both_modes_are_told_where_both_settle_and_where_none_does() -> None:
     constant = replace(both, voltage_v=np.full(len(both), 12.0))
     with pytest.raises(Failure, match=r"rig, slow mode: no step of the voltage.*; rig, fast mode: no step"):
         first_stage(constant, 63.0)
+
+
+@cache
+def long() -> Measurement:
+    """Five seconds at each voltage: several whole turns, all of them with the same constant."""
+    return as_measured(part(0.0, GOOD, DRAG, 5000))
+
+
+def bridged(kind: str, seed: int) -> Measurement:
+    """Samples missing in a way, with a wrong current in their place, but not where the voltage steps."""
+    clean, rng = long(), np.random.default_rng(seed)
+    count, edges = len(clean), rising_edges(clean.park)
+    bad = np.zeros(count, bool)
+    if kind == "at edges":
+        bad[edges + rng.integers(-1, 1)] = True
+    elif kind.endswith("in a row"):
+        for start in edges + rng.integers(50, 300, len(edges)):
+            bad[start : start + int(kind.partition(" ")[0])] = True
+    else:
+        bad = rng.random(count) < float(kind.partition(" ")[0]) / 100.0
+        bad[np.concatenate([edges - 1, edges])] = False
+    for step in np.flatnonzero(np.diff(clean.voltage_v)):
+        bad[max(0, step - 20) : step + 60] = False
+    return replace(clean, current_a=np.where(bad, 99.0, clean.current_a), valid=~bad)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("kind", ["1 %", "2 %", "3 %", "1 in a row", "5 in a row"])
+def test_turns_with_few_samples_missing_count_and_give_the_true_constant(kind: str, seed: int) -> None:
+    found, clean = (first_stage(each, 63.0)["slow"] for each in (bridged(kind, seed), long()))
+    assert found.turns == clean.turns > 5 and not found.left_out
+    assert found.by_park is not None
+    constant, inertia = found.by_park.constant_v_s, found.by_park.inertia_kg_m2
+    assert constant.n == pytest.approx(K, rel=2e-3) and abs(constant.n - K) < 3.0 * constant.s
+    assert abs(inertia.n - J) < 3.0 * inertia.s
+
+
+@pytest.mark.parametrize("kind", ["10 %", "20 in a row", "at edges"])
+def test_where_no_turn_counts_it_is_told_why(kind: str) -> None:
+    found, turns = first_stage(bridged(kind, 1), 63.0)["slow"], first_stage(long(), 63.0)["slow"].turns
+    assert found.by_park is None and found.turns == 0
+    assert found.left_out.startswith(f"{turns} of {turns} whole turns left out: more than 5 % of the samples missing")
+    notes = starting_point([bridged(kind, 1)], chosen(load_bench("default").parameter_row), 63.0).notes
+    assert any(note.endswith(f"0 turns ({found.left_out})") for note in notes)
+
+
+def test_where_there_is_no_whole_turn_it_is_told() -> None:
+    found = first_stage(as_measured(part(0.0, GOOD, DRAG, 200)), 63.0)["slow"]
+    assert (found.turns, found.left_out) == (0, "no whole turn between two park edges")

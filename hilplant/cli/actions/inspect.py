@@ -60,6 +60,7 @@ def _motor(data: Measurement, gear_ratio: float) -> dict[str, Any]:
     for mode, found in results.items():
         motor = found.by_park or found.by_load
         how = f"{found.turns} turns at ratio {gear_ratio:g}" if found.by_park else "an assumed load"
+        how += f" ({found.left_out})" if found.left_out else ""
         typer.echo(f"stage 1, {mode}: from {found.steps} steps of the voltage and {how} (+- standard error)")
         for name, value in zip(Equivalent._fields, map(quantity, motor), strict=True):
             typer.echo(f"  {name:20} {value:.2uP}")
