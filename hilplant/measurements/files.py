@@ -1,6 +1,7 @@
 """Reads measured channels from what rigs leave behind: recordings, MF4, CSV, Parquet, and CAN logs with a database."""
 
 import hashlib
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from hilplant.measurements.csv_table import Table
 
 LOGS = (".blf", ".asc", ".log", ".trc")
+#: A name of the time that ends with its unit.
+_TIME = re.compile(r"(t|time|zeit|timestamps?)[ _](?P<unit>ms|us|ns|s|min)", re.IGNORECASE)
 ENDINGS = (".hilrec", ".csv", ".txt", ".parquet", ".mf4", ".mdf", *LOGS)
 
 
@@ -157,8 +160,13 @@ def _table(origin: Origin, table: "Table") -> Channels:
 
 
 def _time_of(columns: Mapping[str, Any], units: Mapping[str, str]) -> Column | None:
-    """Return the column that is called time and in no other unit, else the only one in a unit of time."""
+    """Return the column that is called time and in no other unit, else the only one in a unit of time.
+
+    The unit may stand in the name, as in `t_ms`.
+    """
     timed = [Column(name) for name in columns if units.get(name) and has_unit("time", units[name])]
+    ends = {name: found["unit"] for name in columns if not units.get(name) and (found := _TIME.fullmatch(name))}
+    timed += [Column(name, unit.lower()) for name, unit in ends.items()]
     fit = [name for name in columns if not units.get(name) or Column(name) in timed]
     words = (Column(name) for word in KNOWN_NAMES["time"] for name in fit if name.lower() == word)
     return next(words, timed[0] if len(timed) == 1 else None)

@@ -86,6 +86,15 @@ def test_minutes_and_seconds_are_a_time(tmp_path: Path, form: str, decimal: str)
     assert found.units["time"] == "s"
 
 
+@pytest.mark.parametrize("name", ["t_{}", "time_{}", "Time {}", "timestamp_{}", "Zeit_{}"])
+@pytest.mark.parametrize(("unit", "seconds"), [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9), ("MS", 1e-3)])
+def test_a_unit_may_end_the_name_of_the_time(tmp_path: Path, name: str, unit: str, seconds: float) -> None:
+    rows = [f"{k},1.5,{k % 5}" for k in INDEX]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join([f"{name.format(unit)},U,I", *rows]))
+    assert read_channels(Origin(path))["U"].time_s == pytest.approx(seconds * INDEX, rel=1e-12)
+
+
 def test_columns_of_text_are_named_where_one_is_missed(tmp_path: Path) -> None:
     rows = [f"{0.001 * k} s;12.5 V;{k % 3};1" for k in INDEX]
     path = tmp_path / "a.csv"
