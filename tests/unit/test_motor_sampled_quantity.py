@@ -35,7 +35,13 @@ def readings(folder: Path, columns: Columns, role: str, head: bool = True) -> Pa
     return folder / "readings.yaml"
 
 
-TIMES = [("t [s]", TIME_S), ("time_s", TIME_S), ("Time (ms)", 1e3 * TIME_S), ("t / µs", 1e6 * TIME_S)]
+TIMES = [
+    ("t [s]", TIME_S),
+    ("time_s", TIME_S),
+    ("Time (ms)", 1e3 * TIME_S),
+    ("t / µs", 1e6 * TIME_S),
+    ("t_ms", 1e3 * TIME_S),
+]
 CURRENTS = [
     ("i [A]", AMPERES), ("i", AMPERES), ("current_a", AMPERES), ("I_mot [mA]", 1e3 * AMPERES),
     ("Ampl in kA", 1e-3 * AMPERES),
@@ -84,7 +90,7 @@ def test_two_columns_without_a_head_are_seconds_and_amperes(tmp_path: Path) -> N
             "current",
             "more than one column is known by unit or name as the current among i1 [A], i2 [mA]; ",
         ),
-        (["t_ms", "i [A]"], "current", "no column is known as the time among t_ms, i; write 't [s]' or 't [ms]'"),
+        (["x_ms", "i [A]"], "current", "no column is known as the time among x_ms, i; write 't [s]' or 't [ms]'"),
         (["a", "b"], "speed", "as the time among a, b; "),
         (["t [V]", "i [A]"], "current", "no column is known as the time among t, i; "),
     ],
