@@ -6,9 +6,9 @@ Works on a copy of the checkout. A mutant of the models is tried first with noth
 that has the libraries loaded: most are killed within seconds. Where that comes to no end in time, it is tried compiled,
 in a new process; where all tests pass, also on those that Python is too slow for. Other code is never compiled: its
 mutants run at once with the models compiled as they are. The same seed and number give the same mutants of the same
-code. Each that lives is printed with file, line and change, to be killed by a test or argued to
-change nothing. One whose compiled tests come to no end is killed only where the same tests without it take a fraction
-of that time; else it is slow, not counted. Exit code 1 when a mutant lives or is slow.
+code. Each that lives is printed with file, line and change, to be killed by a test or argued to change nothing. One
+whose compiled tests come to no end is killed only where the same tests without it take a fraction of that time; else
+it is slow, not counted. Exit code 1 when a mutant lives or is slow.
 """
 
 import argparse
@@ -114,10 +114,9 @@ class Copy:
         whole = changed.read_text(encoding="utf-8")
         changed.write_text(mutant.text, encoding="utf-8")
         os.utime(changed, (turn, turn))  # compiled bytes of an earlier turn are known as old
-        is_model = MODELS in mutant.file.parents
-        longest_s = LONGEST_COMPILED_S if is_model else LONGEST_AS_THEY_ARE_S
+        longest_s = _longest_compiled_s(mutant.file)
         try:
-            trial = self._model_tried(tests) if is_model else _ran(tests, self._folder, longest_s)
+            trial = self._model_tried(tests) if _is_model(mutant.file) else _ran(tests, self._folder, longest_s)
         finally:
             changed.write_text(whole, encoding="utf-8")
         if trial.ended:
@@ -186,8 +185,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="hilplant-mutants-") as folder:
         copy = Copy(Path(folder) / "copy")
         tests_of = {mutant.file: tests_for(mutant.file, options.near) for mutant in drawn}  # those that the copy has
-        for tests in tests_of.values() if options.check else ():
-            if not (trial := copy.clean(tests, LONGEST_COMPILED_S)).passed:
+        for file, tests in tests_of.items() if options.check else ():
+            if not (trial := copy.clean(tests, _longest_compiled_s(file))).passed:
                 how = "fail" if trial.ended else "come to no end"
                 sys.exit(f"these {how} without a mutant: {' '.join(tests)}")
         for turn, mutant in enumerate(drawn, 1):
@@ -196,6 +195,14 @@ def main() -> int:
     alive, slow = verdicts.count(LIVES), verdicts.count(SLOW)
     print(f"{verdicts.count(KILLED)} killed, {alive} alive, of {len(drawn) - slow}; {slow} slow, not counted")
     return 1 if alive or slow else 0
+
+
+def _is_model(file: Path) -> bool:
+    return MODELS in file.parents
+
+
+def _longest_compiled_s(file: Path) -> int:
+    return LONGEST_COMPILED_S if _is_model(file) else LONGEST_AS_THEY_ARE_S
 
 
 def _place(mutant: Mutant) -> str:

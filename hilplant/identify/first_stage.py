@@ -199,8 +199,8 @@ def _turns(data: Measurement, mask: Flags, gear_ratio: float) -> _Turns:
     lost = len(whole) - len(counted)
     why = (
         f"{lost} of {len(whole)} whole turns left out: more than {100.0 * BRIDGED_PART:g} % of the samples missing or "
+        f"outliers, more than {BRIDGED_RUN} in a row, or one at a park edge"
     )
-    why += f"outliers, more than {BRIDGED_RUN} in a row, or one at a park edge"
     return _Turns(counted, why if lost else "")
 
 

@@ -106,9 +106,8 @@ def has_unit(role: str, unit: str) -> bool:
 
 def text_columns(texts: Mapping[str, str]) -> str:
     """Return how a sentence about columns ends where some were left out because they hold text."""
-    return (
-        "; text, no numbers: " + ", ".join(f"{name} ('{text[:40]}')" for name, text in texts.items()) if texts else ""
-    )
+    told = ", ".join(f"{name} ('{text[:40]}')" for name, text in texts.items())
+    return f"; text, no numbers: {told}" if told else ""
 
 
 def choose_columns(
@@ -123,11 +122,11 @@ def choose_columns(
 
     """
     chosen: dict[str, Column] = {}
+    left_out = text_columns(texts or {})
     for role, column in given.items():
         name = _name_in_file(column.name, names)
         if name is None:
             near = suggestion(column.name, names)
-            left_out = text_columns(texts or {})
             raise Failure(f"{source}: has no column '{column.name}' for the {role}{near}{left_out}")
         chosen[role] = column._replace(name=name)
     taken = {column.name for column in chosen.values()}
@@ -139,7 +138,7 @@ def choose_columns(
         example = ",".join(f"{role}=NAME" for role in missing)
         raise Failure(
             f"{source}: no column for {' and '.join(missing)}; say --columns {example} with one of {', '.join(names)}"
-            f"{text_columns(texts or {})}"
+            f"{left_out}"
         )
     return chosen
 

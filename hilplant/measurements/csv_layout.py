@@ -115,11 +115,8 @@ def _doubtful(cells: list[str], decimal: str) -> bool:
         return len(marked) == len(written)
     other = "." if decimal == "," else ","
     marked = [cell for cell in written if in_thousands(cell, other)]
-    return (
-        bool(marked)
-        and all(cell in marked or cell.lstrip("+-").isdecimal() for cell in written)
-        and (len(marked) < len(written))
-    )
+    others = [cell for cell in written if not in_thousands(cell, other)]
+    return len(marked) > 0 and len(others) > 0 and all(cell.lstrip("+-").isdecimal() for cell in others)
 
 
 def _sparse_kind(same: list[tuple[int, list[str]]], first: int, column: int, decimal: str) -> str:

@@ -50,7 +50,7 @@ def read_csv(path: Path) -> Table:
 
     """
     text = _unbroken(_decoded(path.read_bytes()))
-    head = [line[:_LONGEST_LINE] for line in text[:_LONGEST_HEAD].split("\n")[:_HEAD_LINES]]
+    head = [line[:_LONGEST_LINE] for line in text[:_LONGEST_HEAD].removesuffix("\n").split("\n")[:_HEAD_LINES]]
     if not any(head):
         raise Failure(f"{path}: is empty")
     layout = layout_of(head)

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from hilplant.bus.frame_layout import CLASSIC_BYTES, FD_LENGTHS
+
 #: Memory that the process may have: this, and so many times the file [byte].
 MEMORY, MEMORY_PER_BYTE = 4 << 30, 50
 _FRAMES = "CAN_DataFrame"
 #: The names of bus logging; any other name is that of a signal.
 _BUS_LOGGING = re.compile(r"CAN_(Data|Remote|Error|Overload)Frame(\..*)?")
-#: Bytes of a CAN FD frame by its DLC; a frame of classic CAN has 8 from 8 on.
-_FD_LENGTHS = np.array((*range(9), 12, 16, 20, 24, 32, 48, 64))
 #: The bit of an identifier that says 29 bits, where a file has no IDE of its own.
 _EXTENDED = 1 << 31
 
@@ -138,8 +138,9 @@ def _lengths(column: Callable[[str], Any], count: int, width: int) -> Any:
         return np.full(count, width) if said is None else said
     if (wrong := codes[(codes < 0) | (codes > 15)]).size:
         raise ValueError(f"{_FRAMES}.DLC holds {wrong[0]}, which is none (0 to 15), and there is no DataLength")
-    classic = np.minimum(codes, 8)
-    return np.minimum(_FD_LENGTHS[codes] if fd is None else np.where(fd != 0, _FD_LENGTHS[codes], classic), width)
+    long = np.array(FD_LENGTHS)[codes]
+    classic = np.minimum(codes, CLASSIC_BYTES)
+    return np.minimum(long if fd is None else np.where(fd != 0, long, classic), width)
 
 
 def _buses(file: Any, numbers: list[int]) -> dict[int, str]:

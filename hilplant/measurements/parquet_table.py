@@ -11,8 +11,7 @@ from hilplant.arrays import Floats
 from hilplant.failure import Failure
 from hilplant.measurements.csv_layout import kind_of_column
 from hilplant.measurements.csv_table import Table, converted, since_first
-
-_SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+from hilplant.units import FACTORS
 
 
 def read_parquet(path: Path) -> Table:
@@ -54,7 +53,7 @@ def _column(path: Path, column: Any) -> tuple[Floats, bool] | None:
         return _text(path, [cell or "" for cell in column.to_pylist()])
     if pa.types.is_time(kind):
         ticks = column.cast(pa.int64() if pa.types.is_time64(kind) else pa.int32()).to_numpy()
-        return since_first(np.zeros(len(ticks)), ticks * _SECONDS[kind.unit]), True
+        return since_first(np.zeros(len(ticks)), ticks * FACTORS["s"][kind.unit]), True
     values = column.to_numpy()
     if values.dtype.kind not in "mM" or not len(values):
         return np.asarray(values, np.float64), False
